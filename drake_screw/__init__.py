@@ -1,0 +1,3 @@
+from drake_screw.errors import DrakeScrewError
+
+__all__ = ["DrakeScrewError"]

@@ -1,0 +1,78 @@
+"""The one family of errors that drake_screw raises for input it cannot use.
+
+Each says what is wrong and where, and carries the remedy in its message, so that a program can
+print ``str(error)`` alone. Failing to find a plan is a value (`planning.Outcomes`), never an error.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from pathlib import Path
+
+
+class DrakeScrewError(Exception):
+    """Base of the family.
+
+    Args:
+        message: what is wrong, in one sentence.
+        remedy: what the user can do about it.
+        file: the input file it was found in.
+        line: its line there, counted from 1.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        remedy: str | None = None,
+        file: str | Path | None = None,
+        line: int | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.message = message
+        self.remedy = remedy
+        self.file = None if file is None else Path(file)
+        self.line = line
+
+    def __str__(self) -> str:
+        place = "" if self.file is None else f"{self.file}: "
+        if self.file is not None and self.line is not None:
+            place = f"{self.file}:{self.line}: "
+        return f"{place}{self.message}" + (f"\n  {self.remedy}" if self.remedy else "")
+
+
+class ModelError(DrakeScrewError):
+    """A robot model that cannot be loaded, or that lacks a name asked of it."""
+
+
+class RecordingError(DrakeScrewError):
+    """A recording of a demonstration, or a file or folder of one, that cannot be used."""
+
+
+class ScenarioError(DrakeScrewError):
+    """A scenario, an override of one, or a table of task instances that cannot be used."""
+
+
+class RunDirectoryError(DrakeScrewError):
+    """A run directory that cannot be written, read or continued."""
+
+
+def nearest(name: str, valid: Iterable[str]) -> str | None:
+    """The valid name most like `name`, or None where none is alike."""
+    matches = difflib.get_close_matches(name, list(valid), n=1, cutoff=0.6)
+    return matches[0] if matches else None
+
+
+def unknown(kind: str, name: str, where: str, valid: Iterable[str]) -> tuple[str, str]:
+    """Message and remedy for a name that does not exist.
+
+    Returns:
+        For example ``("no frame 'left_hnd' in model 'baxter'",
+        "Did you mean 'left_hand'? Frames: left_hand, left_gripper")``.
+    """
+    valid = list(valid)
+    guess = nearest(name, valid)
+    hint = f"Did you mean '{guess}'? " if guess else ""
+    listed = ", ".join(valid[:40]) + (", ..." if len(valid) > 40 else "")
+    return f"no {kind} '{name}' in {where}", f"{hint}{kind.capitalize()}s: {listed}"
