@@ -1,0 +1,169 @@
+"""One serial arm of a Drake plant: what planning needs of it, looked up by names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import Frame, FrameIndex, JacobianWrtVariable, Joint
+
+from drake_screw.errors import ModelError, unknown
+from drake_screw.robot.screw_chain import ScrewChain
+from drake_screw.screws.rotations import Array
+
+
+class Arm:
+    """Kinematics and limits of some revolute and prismatic joints of a finalized plant.
+
+    Args:
+        plant: finalized; it stays the source of truth for everything here.
+        joint_names: the arm's n joints, base to hand.
+        end_effector: name of the frame E that is led along the screws.
+        parked: positions of other joints (rad, m) by name; the rest keep the plant's defaults.
+
+    Raises:
+        ModelError: a name the plant does not have (the message lists those it has), a joint that
+            is neither revolute nor prismatic, one without finite limits, or one that does not
+            move E.
+    """
+
+    def __init__(
+        self,
+        plant: MultibodyPlant,
+        joint_names: Sequence[str],
+        end_effector: str,
+        *,
+        parked: Mapping[str, float] | None = None,
+    ) -> None:
+        self.plant = plant
+        self.joint_names = tuple(joint_names)
+        self.end_effector = end_effector
+        self._context = plant.CreateDefaultContext()
+        self._W = plant.world_frame()
+        self._E = _frame(plant, end_effector)
+        joints = [_joint(plant, name) for name in self.joint_names]
+        for joint in joints:
+            if joint.type_name() not in ("revolute", "prismatic"):
+                raise ModelError(
+                    f"joint '{joint.name()}' is {joint.type_name()}",
+                    remedy="An arm is made of revolute and prismatic joints.",
+                )
+        for name, value in (parked or {}).items():
+            joint = _joint(plant, name)
+            if joint.num_positions() != 1:
+                raise ModelError(f"joint '{name}' cannot be parked: it does not have one position")
+            plant.SetPositions(
+                self._context,
+                _with(plant.GetPositions(self._context), joint.position_start(), value),
+            )
+        self._q0 = plant.GetPositions(self._context)
+        self._columns = np.array([joint.position_start() for joint in joints])
+        self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
+        self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
+        self.velocity_limits = np.array([joint.velocity_upper_limits()[0] for joint in joints])
+        endless = ~(np.isfinite(self.lower) & np.isfinite(self.upper))
+        if endless.any():
+            raise ModelError(
+                f"joint '{self.joint_names[int(np.argmax(endless))]}' has no position limits",
+                remedy="Give it finite limits in the model; planning is about staying in them.",
+            )
+        moves = np.linalg.norm(self.jacobian((self.lower + self.upper) / 2.0), axis=0) > 1e-9
+        if not moves.all():
+            raise ModelError(
+                f"joint '{self.joint_names[int(np.argmin(moves))]}' does not move '{end_effector}'",
+                remedy="List the joints between the base and the end effector.",
+            )
+
+    @property
+    def n(self) -> int:
+        """Number of joints."""
+        return len(self.joint_names)
+
+    def full_positions(self, q: ArrayLike) -> Array:
+        """Positions of the whole plant; q (..., n) rad or m to (..., plant.num_positions())."""
+        q = np.asarray(q, dtype=float)
+        full = np.tile(self._q0, (*q.shape[:-1], 1))
+        full[..., self._columns] = q
+        return full
+
+    def pose(self, q: ArrayLike) -> Array:
+        """Forward kinematics; q (..., n) rad or m to X_WE (..., 4, 4)."""
+        q = np.asarray(q, dtype=float)
+        X_WE = np.empty((*q.shape[:-1], 4, 4))
+        for index in np.ndindex(q.shape[:-1]):
+            self._set(q[index])
+            X_WE[index] = self._E.CalcPoseInWorld(self._context).GetAsMatrix4()
+        return X_WE
+
+    def jacobian(self, q: ArrayLike) -> Array:
+        """``V_WE = jacobian(q) @ qdot``, E's spatial velocity in W [w; v]; (n,) to (6, n)."""
+        self._set(np.asarray(q, dtype=float))
+        return self._jacobian()
+
+    def pose_and_jacobian(self, q: ArrayLike) -> tuple[Array, Array]:
+        """`pose` and `jacobian` of one configuration (n,): X_WE (4, 4) and J_WE (6, n)."""
+        self._set(np.asarray(q, dtype=float))
+        return self._E.CalcPoseInWorld(self._context).GetAsMatrix4(), self._jacobian()
+
+    def margin(self, q: ArrayLike) -> Array:
+        """Distance to the nearer limit, negative outside; (..., n) to (..., n), rad or m."""
+        q = np.asarray(q, dtype=float)
+        return np.minimum(q - self.lower, self.upper - q)
+
+    def screw_chain(self) -> ScrewChain:
+        """The arm as a product of exponentials, read off the plant at q = 0."""
+        X_WE, J_WE = self.pose_and_jacobian(np.zeros(self.n))
+        screws = J_WE.T.copy()
+        screws[:, 3:] -= np.cross(screws[:, :3], X_WE[:3, 3])
+        return ScrewChain(self.joint_names, screws, X_WE, self.lower.copy(), self.upper.copy())
+
+    def _set(self, q: Array) -> None:
+        if q.shape != (self.n,):
+            raise ValueError(f"q has shape {q.shape}, expected ({self.n},)")
+        full = self._q0.copy()
+        full[self._columns] = q
+        self.plant.SetPositions(self._context, full)
+
+    def _jacobian(self) -> Array:
+        J = self.plant.CalcJacobianSpatialVelocity(
+            self._context, JacobianWrtVariable.kQDot, self._E, np.zeros(3), self._W, self._W
+        )
+        return J[:, self._columns]
+
+
+def _with(q: Array, index: int, value: float) -> Array:
+    q = q.copy()
+    q[index] = value
+    return q
+
+
+def _joint(plant: MultibodyPlant, name: str) -> Joint:
+    joints = {plant.get_joint(i).name(): plant.get_joint(i) for i in plant.GetJointIndices()}
+    if name not in joints:
+        movable = [n for n, joint in joints.items() if joint.num_positions() == 1]
+        message, remedy = unknown("joint", name, "the robot model", movable)
+        raise ModelError(message, remedy=remedy)
+    return joints[name]
+
+
+def _frame(plant: MultibodyPlant, name: str) -> Frame:
+    frames = [plant.get_frame(FrameIndex(i)) for i in range(plant.num_frames())]
+    matches = [frame for frame in frames if frame.name() == name]
+    if len(matches) == 1:
+        return matches[0]
+    message, remedy = unknown("frame", name, "the robot model", _public(frames))
+    if matches:
+        message = f"{len(matches)} frames are called '{name}'"
+    raise ModelError(message, remedy=remedy)
+
+
+def _public(frames: Sequence[Frame]) -> list[str]:
+    """Names people gave: not the world, nor the frames Drake makes at each end of a joint."""
+    names = [frame.name() for frame in frames]
+    return [
+        n
+        for n in names
+        if n != "world" and not n.startswith("_") and not n.endswith(("_parent", "_child"))
+    ]

@@ -1,0 +1,220 @@
+"""The Drake side of a scenario: robot, table and objects in one plant, with collision queries."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydrake.geometry import Box, Cylinder, SceneGraph
+from pydrake.math import RigidTransform
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
+from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
+from pydrake.planning import (
+    CollisionCheckerParams,
+    RobotDiagram,
+    RobotDiagramBuilder,
+    SceneGraphCollisionChecker,
+)
+
+from drake_screw.errors import ModelError, unknown
+from drake_screw.resources import MODEL_SUFFIXES, find_resource
+from drake_screw.robot.arm import Arm
+from drake_screw.screws import quaternion_from_rotation
+from drake_screw.screws.rotations import Array
+
+WOOD = np.array([0.76, 0.68, 0.56, 1.0])
+CLAY = np.array([0.93, 0.93, 0.90, 1.0])
+
+
+@dataclass(frozen=True)
+class RobotConfig:
+    """Which arm of which model, and how it starts."""
+
+    model: str
+    joints: tuple[str, ...]
+    end_effector: str
+    start: tuple[float, ...]
+    base: str = "base"
+    parked: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class TableConfig:
+    """A box: centre (x, y) and size (x, y) in m, height of its top in W and thickness in m."""
+
+    center: tuple[float, float]
+    size: tuple[float, float]
+    top: float
+    thickness: float = 0.04
+
+
+@dataclass(frozen=True)
+class ObjectConfig:
+    """An upright round object, a bowl; its frame is at the centre of its bottom. In m."""
+
+    name: str
+    radius: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Workcell:
+    """Robot, table and objects in one Drake diagram.
+
+    Objects are free bodies of the plant, so that one workcell serves every task instance: give
+    their poses X_WO with each query.
+
+    Attributes:
+        diagram, plant, scene_graph: finalized, without dynamics (continuous time).
+        arm: the arm that is planned for.
+        start: (n,) rad, its start configuration.
+        objects: the objects' bodies.
+        robot: the model instance of the robot.
+        model_file: where the robot was read from.
+    """
+
+    diagram: RobotDiagram
+    plant: MultibodyPlant
+    scene_graph: SceneGraph
+    arm: Arm
+    start: Array
+    objects: tuple[RigidBody, ...]
+    robot: ModelInstanceIndex
+    model_file: Path
+    checker: SceneGraphCollisionChecker
+
+    def positions(self, q: ArrayLike, X_WO: ArrayLike) -> Array:
+        """Positions of the whole plant.
+
+        Args:
+            q: (..., n) rad or m, of the arm.
+            X_WO: (..., k, 4, 4) poses of the k objects; leading axes broadcast.
+
+        Returns:
+            (..., plant.num_positions()).
+        """
+        full, X_WO = self.arm.full_positions(q), np.asarray(X_WO, dtype=float)
+        shape = np.broadcast_shapes(full.shape[:-1], X_WO.shape[:-3])
+        full = np.broadcast_to(full, (*shape, full.shape[-1])).copy()
+        for i, body in enumerate(self.objects):
+            first = body.floating_positions_start()
+            full[..., first : first + 4] = quaternion_from_rotation(X_WO[..., i, :3, :3])
+            full[..., first + 4 : first + 7] = X_WO[..., i, :3, 3]
+        return full
+
+    def collides(self, q: ArrayLike, X_WO: ArrayLike) -> Array:
+        """Whether the robot touches itself, the table or an object.
+
+        Args:
+            q: (m, n).
+            X_WO: (k, 4, 4) or (m, k, 4, 4).
+
+        Returns:
+            (m,) bool.
+        """
+        full = self.positions(q, X_WO)
+        free = self.checker.CheckConfigsCollisionFree(list(full), parallelize=True)
+        return ~np.array(free, dtype=bool)
+
+    def colliding_bodies(self, q: ArrayLike, X_WO: ArrayLike) -> tuple[tuple[str, str], ...]:
+        """Names of the pairs of bodies that touch at one configuration q (n,)."""
+        clearance = self.checker.CalcRobotClearance(self.positions(q, X_WO), 0.0)
+        name = [
+            (self.plant.get_body(a).name(), self.plant.get_body(b).name())
+            for a, b, distance in zip(
+                clearance.robot_indices(),
+                clearance.other_indices(),
+                clearance.distances(),
+                strict=True,
+            )
+            if distance < 0.0
+        ]
+        return tuple(dict.fromkeys(name))
+
+
+def build_workcell(
+    robot: RobotConfig,
+    *,
+    table: TableConfig | None = None,
+    objects: Sequence[ObjectConfig] = (),
+) -> Workcell:
+    """Build the diagram of a robot, a table and some objects.
+
+    Raises:
+        ModelError: the model cannot be read, or lacks a name the configuration asks for.
+    """
+    builder = RobotDiagramBuilder(time_step=0.0)
+    plant: MultibodyPlant = builder.plant()
+    model_file, instance = add_robot(builder.parser(), robot)
+    if table is not None:
+        add_table(plant, table)
+    bodies = tuple(_add_object(plant, item) for item in objects)
+    plant.Finalize()
+    arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
+    if len(robot.start) != arm.n:
+        raise ModelError(
+            f"the start configuration has {len(robot.start)} angles for {arm.n} joints"
+        )
+    scene_graph = builder.scene_graph()
+    diagram = builder.Build()
+    checker = SceneGraphCollisionChecker(
+        CollisionCheckerParams(model=diagram, robot_model_instances=[instance], edge_step_size=0.05)
+    )
+    start = np.array(robot.start, dtype=float)
+    return Workcell(diagram, plant, scene_graph, arm, start, bodies, instance, model_file, checker)
+
+
+def add_robot(parser: Parser, robot: RobotConfig) -> tuple[Path, ModelInstanceIndex]:
+    """Read the robot's model into a plant and fix its base to the world where it is free."""
+    plant = parser.plant()
+    file = find_resource("models", robot.model, MODEL_SUFFIXES)
+    try:
+        instance = parser.AddModels(str(file))[0]
+    except (RuntimeError, ValueError) as error:
+        raise ModelError(f"Drake cannot read this model: {error}", file=file) from error
+    names = [plant.get_body(i).name() for i in plant.GetBodyIndices(instance)]
+    if robot.base not in names:
+        message, remedy = unknown("link", robot.base, f"model '{file.stem}'", names)
+        raise ModelError(message, remedy=remedy, file=file)
+    welded = {
+        plant.get_joint(i).child_body().name()
+        for i in plant.GetJointIndices(instance)
+        if plant.get_joint(i).parent_body().name() == "world"
+    }
+    if robot.base not in welded:
+        plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(robot.base, instance))
+    return file, instance
+
+
+def add_table(plant: MultibodyPlant, table: TableConfig) -> None:
+    """Add the table as a box fixed to the world."""
+    box = Box(*table.size, table.thickness)
+    X_WT = RigidTransform([*table.center, table.top - table.thickness / 2.0])
+    body = plant.AddRigidBody("table", plant.AddModelInstance("table"), SpatialInertia.Zero())
+    plant.WeldFrames(plant.world_frame(), body.body_frame(), X_WT)
+    _add_shape(plant, body, box, RigidTransform(), WOOD)
+
+
+def _add_object(plant: MultibodyPlant, item: ObjectConfig) -> RigidBody:
+    inertia = SpatialInertia.SolidCylinderWithMass(0.3, item.radius, item.height, [0, 0, 1])
+    body = plant.AddRigidBody(item.name, plant.AddModelInstance(item.name), inertia)
+    X_OC = RigidTransform([0.0, 0.0, item.height / 2.0])
+    _add_shape(plant, body, Cylinder(item.radius, item.height), X_OC, CLAY)
+    return body
+
+
+def _add_shape(
+    plant: MultibodyPlant,
+    body: RigidBody,
+    shape: Box | Cylinder,
+    X_BG: RigidTransform,
+    color: Array,
+) -> None:
+    plant.RegisterVisualGeometry(body, X_BG, shape, f"{body.name()}_look", color)
+    plant.RegisterCollisionGeometry(
+        body, X_BG, shape, f"{body.name()}_shape", CoulombFriction(0.8, 0.6)
+    )
