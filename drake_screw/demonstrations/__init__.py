@@ -1,0 +1,18 @@
+"""Recordings of demonstrations, and the guiding poses extracted from them."""
+
+from drake_screw.demonstrations.demonstration import Demonstration, demonstration_from_recording
+from drake_screw.demonstrations.library import read_library, read_recording, write_recording
+from drake_screw.demonstrations.recording import Recording
+from drake_screw.demonstrations.segmentation import SegmentationConfig, guiding_poses, segment
+
+__all__ = [
+    "Demonstration",
+    "Recording",
+    "SegmentationConfig",
+    "demonstration_from_recording",
+    "guiding_poses",
+    "read_library",
+    "read_recording",
+    "segment",
+    "write_recording",
+]

@@ -1,0 +1,163 @@
+"""Recordings on disk: a folder is a recording, a folder of such folders is a library."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from drake_screw.demonstrations.baxter_csv import csv_text, read_csv
+from drake_screw.demonstrations.recording import Recording, checked
+from drake_screw.errors import RecordingError
+from drake_screw.screws import normalized
+from drake_screw.screws.rotations import Array
+
+JOINTS, OBJECTS, REGION = "joint_angles.csv", "object_poses.csv", "region_of_interest.txt"
+
+
+def read_recording(
+    folder: str | Path,
+    joint_names: Sequence[str],
+    lower: Array,
+    upper: Array,
+    *,
+    objects: int | None = None,
+) -> Recording:
+    """Read and check one recording.
+
+    Args:
+        folder: holds joint_angles.csv, object_poses.csv (a 4x4 matrix X_WO per object, stacked)
+            and perhaps region_of_interest.txt (a factor).
+        joint_names: the arm's n joints.
+        lower, upper: (n,) limits, rad or m.
+        objects: how many object poses there must be; any number if None.
+
+    Raises:
+        RecordingError: with file and line, whatever is wrong.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise RecordingError(
+            "no such folder", file=folder, remedy=f"A recording is a folder with {JOINTS}."
+        )
+    t, q, lines = read_csv(folder / JOINTS, joint_names)
+    X_WO = read_object_poses(folder / OBJECTS)
+    if objects is not None and len(X_WO) != objects:
+        raise RecordingError(
+            f"{len(X_WO)} object poses, where the scenario has {objects} objects",
+            remedy="Stack one 4x4 matrix for each object, in the scenario's order.",
+            file=folder / OBJECTS,
+        )
+    recording = Recording(
+        folder.name, tuple(joint_names), t, q, X_WO, _factor(folder / REGION), (), folder.resolve()
+    )
+    return checked(recording, lower, upper, file=folder / JOINTS, lines=lines)
+
+
+def read_library(
+    folder: str | Path,
+    joint_names: Sequence[str],
+    lower: Array,
+    upper: Array,
+    *,
+    objects: int | None = None,
+) -> tuple[Recording, ...]:
+    """All recordings in a folder, by name; parameters and errors as `read_recording`'s."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise RecordingError(
+            "no such folder",
+            file=folder,
+            remedy="Give a folder of recordings.",
+        )
+    if (folder / JOINTS).is_file():
+        raise RecordingError(
+            "this is one recording, not a folder of recordings",
+            file=folder,
+            remedy=f"Give the folder it stands in: {folder.resolve().parent}",
+        )
+    found = sorted(item for item in folder.iterdir() if (item / JOINTS).is_file())
+    if not found:
+        raise RecordingError(
+            f"no recordings here: no subfolder has a {JOINTS}",
+            file=folder,
+            remedy="Each recording is a subfolder, such as demo_01.",
+        )
+    return tuple(read_recording(f, joint_names, lower, upper, objects=objects) for f in found)
+
+
+def write_recording(
+    recording: Recording, folder: str | Path, held: Mapping[str, float] | None = None
+) -> None:
+    """Write a recording as the robot's recorder does; `read_recording` reads it back.
+
+    Args:
+        recording: to write.
+        folder: made if missing.
+        held: constant values for the columns of the idle arm and the grippers.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / JOINTS).write_text(csv_text(recording.t, recording.q, recording.joint_names, held))
+    matrices = recording.X_WO.reshape(-1, 4)
+    (folder / OBJECTS).write_text(
+        "".join(",".join(f"{v:.17g}" for v in row) + "\n" for row in matrices.tolist())
+    )
+    if recording.region_of_interest is not None:
+        (folder / REGION).write_text(f"{recording.region_of_interest:g}\n")
+
+
+def read_object_poses(file: Path) -> Array:
+    """Poses X_WO (k, 4, 4) from a CSV of stacked 4x4 matrices.
+
+    Raises:
+        RecordingError: the file is missing or is not a stack of poses.
+    """
+    if not file.is_file():
+        raise RecordingError(
+            "no such file",
+            file=file,
+            remedy="Write the pose X_WO of each object, a 4x4 matrix, comma-separated.",
+        )
+    rows: list[list[float]] = []
+    for number, line in enumerate(file.read_text(encoding="utf-8-sig").splitlines(), start=1):
+        if not line.strip():
+            continue
+        try:
+            row = [float(cell) for cell in line.split(",")]
+        except ValueError as error:
+            raise RecordingError("not numbers", file=file, line=number) from error
+        wrong_end = len(rows) % 4 == 3 and not np.allclose(row, [0, 0, 0, 1], atol=1e-6)
+        if len(row) != 4 or not np.isfinite(row).all() or wrong_end:
+            raise RecordingError(
+                "not a row of a pose"
+                + ("; every fourth row must be 0,0,0,1" if wrong_end else ": expected 4 numbers"),
+                remedy="Write 4x4 matrices, comma-separated, one below the other.",
+                file=file,
+                line=number,
+            )
+        rows.append(row)
+    if not rows or len(rows) % 4:
+        raise RecordingError(f"{len(rows)} rows; 4 for each object are needed", file=file)
+    X_WO = np.array(rows).reshape(-1, 4, 4)
+    R = X_WO[:, :3, :3]
+    if np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(3)).max() > 1e-3 or (np.linalg.det(R) < 0).any():
+        raise RecordingError(
+            "the 3x3 part of a matrix is not a rotation",
+            remedy="Its columns must be unit vectors at right angles, right-handed.",
+            file=file,
+        )
+    return normalized(X_WO)
+
+
+def _factor(file: Path) -> float | None:
+    if not file.is_file():
+        return None
+    try:
+        factor = float(file.read_text())
+    except ValueError as error:
+        raise RecordingError("expected one number, a factor of at least 1", file=file) from error
+    if not factor >= 1.0:
+        raise RecordingError(f"the factor {factor:g} is below 1", file=file)
+    return factor

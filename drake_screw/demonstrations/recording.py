@@ -1,0 +1,166 @@
+"""Recordings of an arm that was led by hand, and the checks they go through on the way in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from drake_screw.errors import RecordingError
+from drake_screw.screws.rotations import Array
+
+CLAMPED_WITHIN = 1e-3  # rad; encoders read this far beyond a limit when the arm rests against it
+GAP = 0.5  # s
+JUMP = 0.05  # rad in one gap
+STILL = 2e-3  # rad
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Joint angles over time, with the object poses at that time.
+
+    Attributes:
+        name: of its folder, say "demo_07".
+        joint_names: n names.
+        t: (m,) s, increasing from 0.
+        q: (m, n) rad or m.
+        X_WO: (k, 4, 4) poses of the k objects.
+        region_of_interest: factor on the smallest hand-object distance, if the recording has its
+            own.
+        notes: what the importer changed, for people.
+        source: folder it was read from.
+    """
+
+    name: str
+    joint_names: tuple[str, ...]
+    t: Array
+    q: Array
+    X_WO: Array
+    region_of_interest: float | None = None
+    notes: tuple[str, ...] = ()
+    source: Path | None = None
+
+    @property
+    def duration(self) -> float:
+        """Length in s."""
+        return float(self.t[-1] - self.t[0])
+
+
+def checked(
+    recording: Recording,
+    lower: Array,
+    upper: Array,
+    *,
+    file: Path | None = None,
+    lines: Array | None = None,
+) -> Recording:
+    """The recording made fit for use, or an error that says where it is not.
+
+    Time is rebased to 0, samples with the stamp of the one before are dropped, angles within 1 mrad
+    beyond a limit are clamped, and of a still head and tail one sample is kept; `notes` tells what
+    was done.
+
+    Args:
+        recording: as read.
+        lower, upper: (n,) joint limits, rad or m.
+        file: named in errors.
+        lines: (m,) the line of each sample in `file`.
+
+    Raises:
+        RecordingError: fewer than two samples, a number that is not finite, time that runs
+            backwards, angles in degrees or beyond the limits, a gap in which the arm moved.
+    """
+    t, q, notes = recording.t, recording.q, list(recording.notes)
+    where = np.arange(len(t)) if lines is None else np.asarray(lines)
+
+    def fail(row: int, message: str, remedy: str) -> RecordingError:
+        return RecordingError(message, remedy=remedy, file=file, line=int(where[row]))
+
+    if len(t) < 2:
+        raise RecordingError(
+            f"{len(t)} samples; a recording needs at least 2", file=file, remedy="Record it again."
+        )
+    bad = ~(np.isfinite(t) & np.isfinite(q).all(axis=1))
+    if bad.any():
+        row = int(np.argmax(bad))
+        what = [n for n, v in zip(recording.joint_names, q[row], strict=True) if not np.isfinite(v)]
+        raise fail(
+            row,
+            f"not a finite number: {', '.join(what) or 'time'}",
+            "Delete the row if it is a single drop-out, or record again.",
+        )
+    back = np.diff(t) < 0.0
+    if back.any():
+        row = int(np.argmax(back)) + 1
+        raise fail(
+            row,
+            f"time runs backwards, from {t[row - 1]:.6f} s to {t[row]:.6f} s",
+            "Sort the rows by time, or split a file into which two recordings were written.",
+        )
+    keep = np.append(True, np.diff(t) > 0.0)
+    if not keep.all():
+        notes.append(f"dropped {np.count_nonzero(~keep)} samples with a repeated time stamp")
+        t, q, where = t[keep], q[keep], where[keep]
+    q = _within_limits(recording, q, lower, upper, notes, fail)
+    gaps = np.flatnonzero((np.diff(t) > GAP) & (np.abs(np.diff(q, axis=0)).max(axis=1) > JUMP))
+    if gaps.size:
+        row = int(gaps[0])
+        raise fail(
+            row + 1,
+            f"{t[row + 1] - t[row]:.2f} s are missing, in which the arm moved",
+            "Record again: what the hand did in the gap cannot be known.",
+        )
+    moved = np.abs(q - q[0]).max(axis=1) > STILL, np.abs(q - q[-1]).max(axis=1) > STILL
+    if not moved[0].any():
+        raise RecordingError(
+            f"the arm does not move: no joint by more than {STILL * 1e3:.0f} mrad",
+            remedy="Record again while leading the arm.",
+            file=file,
+        )
+    ends = q[0].copy(), q[-1].copy()
+    first = int(np.argmax(moved[0])) - 1
+    last = len(t) - int(np.argmax(moved[1][::-1]))
+    if t[first] - t[0] > 0.05 or t[-1] - t[last] > 0.05:
+        notes.append(
+            f"cut off {t[first] - t[0]:.2f} s of standing still at the start, "
+            f"{t[-1] - t[last]:.2f} s at the end"
+        )
+    t, q = t[first : last + 1], q[first : last + 1].copy()
+    q[0], q[-1] = ends
+    return replace(recording, t=t - t[0], q=q, notes=tuple(notes))
+
+
+def _within_limits(
+    recording: Recording,
+    q: Array,
+    lower: Array,
+    upper: Array,
+    notes: list[str],
+    fail: Callable[[int, str, str], RecordingError],
+) -> Array:
+    beyond = np.maximum(lower - q, q - upper)
+    outside = beyond > CLAMPED_WITHIN
+    if outside.any():
+        row, column = (int(i) for i in np.unravel_index(int(np.argmax(outside)), q.shape))
+        name, value = recording.joint_names[column], q[row, column]
+        if np.abs(q).max() > 2.0 * np.pi:
+            raise fail(
+                row,
+                f"{name} is at {value:.4g}; angles beyond 2 pi look like degrees",
+                "Convert the angles to radians.",
+            )
+        raise fail(
+            row,
+            f"{name} is at {value:.4f}, outside its limits {lower[column]:.4f} .. "
+            f"{upper[column]:.4f}",
+            "Check that the recording and the model are of the same robot, or record again.",
+        )
+    if (beyond > 0.0).any():
+        names = np.array(recording.joint_names)[(beyond > 0.0).any(axis=0)]
+        notes.append(
+            f"clamped {', '.join(names)} to the limit (beyond it by {beyond.max() * 1e3:.2f} mrad)"
+        )
+        return np.clip(q, lower, upper)
+    return q

@@ -1,0 +1,82 @@
+"""Partitions of the work area into regions, the arms of the bandit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from drake_screw.screws.rotations import Array
+from drake_screw.tasks.work_area import AXES, WorkArea
+
+
+@dataclass(frozen=True)
+class GridRegions:
+    """A grid of equal cells over the axes of the work area.
+
+    Regions are numbered with the first axis running fastest: in a 4 x 4 grid over x and y,
+    region 5 is the second cell in x and the second in y.
+
+    Attributes:
+        area: the work area.
+        counts: (k, 3) cells along x, y and yaw of each object.
+    """
+
+    area: WorkArea
+    counts: NDArray[np.int64]
+
+    @property
+    def K(self) -> int:
+        """Number of regions."""
+        return int(np.prod(self.counts))
+
+    def cell(self, region: ArrayLike) -> NDArray[np.int64]:
+        """Integer coordinates of regions; (...) to (..., k, 3)."""
+        flat = np.unravel_index(np.asarray(region), self.counts.ravel(), order="F")
+        return np.stack(flat, axis=-1).reshape(*np.shape(region), *self.counts.shape)
+
+    def bounds(self, region: ArrayLike) -> tuple[Array, Array]:
+        """Least and greatest x, y, yaw of regions; (...) to two arrays (..., k, 3)."""
+        cell = self.cell(region)
+        width = (self.area.upper - self.area.lower) / self.counts
+        return self.area.lower + cell * width, self.area.lower + (cell + 1) * width
+
+    def index(self, x_y_yaw: ArrayLike) -> NDArray[np.int64]:
+        """The region of each instance, the nearest one if it lies outside the area.
+
+        Args:
+            x_y_yaw: (..., k, 3).
+
+        Returns:
+            (...) int.
+        """
+        x_y_yaw = np.asarray(x_y_yaw, dtype=float)
+        width = np.where(self.counts > 1, (self.area.upper - self.area.lower) / self.counts, 1.0)
+        cell = np.floor((x_y_yaw - self.area.lower) / width).astype(np.int64)
+        cell = np.clip(cell, 0, self.counts - 1).reshape(*x_y_yaw.shape[:-2], -1)
+        return np.ravel_multi_index(
+            tuple(np.moveaxis(cell, -1, 0)), tuple(self.counts.ravel()), order="F"
+        )
+
+    def name(self, region: int) -> str:
+        """What people call a region: its ranges along the axes that are split."""
+        lower, upper = self.bounds(region)
+        several = len(self.area.objects) > 1
+        parts = [
+            f"{self.area.objects[i].name + ' ' if several else ''}{AXES[j]} "
+            f"{lower[i, j]:.2f}..{upper[i, j]:.2f}"
+            for i, j in zip(*np.nonzero(self.counts > 1), strict=True)
+        ]
+        return ", ".join(parts) or "the whole work area"
+
+
+def grid_regions(area: WorkArea, counts: Mapping[str, int]) -> GridRegions:
+    """A grid from cells per axis, named "x", "bowl.y", ...; axes not named are not split."""
+    table = np.ones((len(area.objects), 3), dtype=np.int64)
+    for key, count in counts.items():
+        name, _, axis = key.rpartition(".")
+        names = [o.name for o in area.objects]
+        table[names.index(name) if name else 0, AXES.index(axis)] = count
+    return GridRegions(area, table)

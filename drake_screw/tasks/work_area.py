@@ -1,0 +1,74 @@
+"""The work area, and the task instances in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from drake_screw.screws import pose_from_planar
+from drake_screw.screws.rotations import Array
+
+AXES = ("x", "y", "yaw")
+
+
+@dataclass(frozen=True)
+class ObjectArea:
+    """Where one object may stand.
+
+    Attributes:
+        name: of the object.
+        lower, upper: x, y in m and yaw in rad; equal where the coordinate is fixed.
+        z: m, height of the object's frame.
+    """
+
+    name: str
+    lower: tuple[float, float, float]
+    upper: tuple[float, float, float]
+    z: float
+
+
+@dataclass(frozen=True)
+class WorkArea:
+    """The box of object poses that a task must work in, one `ObjectArea` for each object."""
+
+    objects: tuple[ObjectArea, ...]
+
+    @property
+    def lower(self) -> Array:
+        """(k, 3) least x, y, yaw of each object."""
+        return np.array([o.lower for o in self.objects])
+
+    @property
+    def upper(self) -> Array:
+        """(k, 3) greatest x, y, yaw of each object."""
+        return np.array([o.upper for o in self.objects])
+
+    @property
+    def z(self) -> Array:
+        """(k,) m, height of each object's frame."""
+        return np.array([o.z for o in self.objects])
+
+    def X_WO(self, x_y_yaw: ArrayLike) -> Array:
+        """Object poses of task instances.
+
+        Args:
+            x_y_yaw: (..., k, 3) m, m, rad.
+
+        Returns:
+            (..., k, 4, 4).
+        """
+        return pose_from_planar(x_y_yaw, self.z)
+
+    def x_y_yaw(self, X_WO: ArrayLike) -> Array:
+        """The coordinates that `X_WO` of this area takes; (..., k, 4, 4) to (..., k, 3)."""
+        X_WO = np.asarray(X_WO, dtype=float)
+        yaw = np.arctan2(X_WO[..., 1, 0], X_WO[..., 0, 0])
+        return np.stack([X_WO[..., 0, 3], X_WO[..., 1, 3], yaw], axis=-1)
+
+    def contains(self, x_y_yaw: ArrayLike, *, tolerance: float = 1e-9) -> Array:
+        """Whether each instance lies in the area; (..., k, 3) to (...) bool."""
+        x_y_yaw = np.asarray(x_y_yaw, dtype=float)
+        inside = (x_y_yaw >= self.lower - tolerance) & (x_y_yaw <= self.upper + tolerance)
+        return np.all(inside, axis=(-2, -1))
