@@ -1,0 +1,7 @@
+"""Plans from demonstrations: outcomes, the reference planner, the batch planner."""
+
+from drake_screw.planning.batch import BatchPlanner
+from drake_screw.planning.outcomes import Cause, Outcomes, Plan, concatenate
+from drake_screw.planning.reference import ReferencePlanner
+
+__all__ = ["BatchPlanner", "Cause", "Outcomes", "Plan", "ReferencePlanner", "concatenate"]

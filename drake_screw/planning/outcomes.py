@@ -1,0 +1,130 @@
+"""What planning answers: success, or where and why it failed. Failing is a value, not an error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_screw.screws.rotations import Array
+
+
+class Cause(IntEnum):
+    """Why a plan ended."""
+
+    SUCCESS = 0
+    JOINT_LIMIT = 1
+    UNREACHABLE = 2
+    COLLISION = 3
+    NOT_TRIED = 4
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """Outcomes of plans, arrays of one shape: (N, D) for N instances and D demonstrations, say.
+
+    Attributes:
+        cause: `Cause` values, uint8.
+        segment: the screw segment that failed, from 0; -1 for a success.
+        joint: the joint at its limit, from 0; -1 otherwise.
+        fraction: how much of the failing segment was done, 0 to 1; 1 for a success.
+    """
+
+    cause: NDArray[np.uint8]
+    segment: NDArray[np.int16]
+    joint: NDArray[np.int8]
+    fraction: NDArray[np.float32]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the arrays."""
+        return self.cause.shape
+
+    @property
+    def success(self) -> NDArray[np.bool_]:
+        """Which plans succeeded."""
+        return np.equal(self.cause, Cause.SUCCESS)
+
+    @property
+    def any_success(self) -> NDArray[np.bool_]:
+        """(N,) of outcomes (N, D): which instances some demonstration solves."""
+        return self.success.any(axis=-1)
+
+    @property
+    def furthest_segment(self) -> NDArray[np.int64]:
+        """(N,) of outcomes (N, D): the segment in which the best attempt failed, from 0.
+
+        For an instance that succeeds it is the largest int16, later than any failure.
+        """
+        tried = np.where(self.cause == Cause.NOT_TRIED, -1, self.segment.astype(np.int64))
+        tried = np.where(self.success, np.iinfo(np.int16).max, tried)
+        return tried.max(axis=-1, initial=-1)
+
+    def __getitem__(self, index: Any) -> Outcomes:
+        return Outcomes(
+            self.cause[index], self.segment[index], self.joint[index], self.fraction[index]
+        )
+
+    def codes(self) -> NDArray[np.str_]:
+        """Short text of each outcome, as the paper's authors write it, counted from 1.
+
+        ``0:0`` success; ``s:j`` failed in the s-th segment at joint j's limit; ``s:n`` unreachable;
+        ``s:c`` collision; ``-`` not tried.
+        """
+        segment = (self.segment.astype(int) + 1).astype(str)
+        joint = (self.joint.astype(int) + 1).astype(str)
+        why = np.select(
+            [self.cause == Cause.UNREACHABLE, self.cause == Cause.COLLISION], ["n", "c"], joint
+        )
+        text = np.char.add(np.char.add(segment, ":"), why)
+        text = np.where(self.success, "0:0", text)
+        return np.where(self.cause == Cause.NOT_TRIED, "-", text)
+
+
+def concatenate(parts: Iterable[Outcomes]) -> Outcomes:
+    """Join outcomes along their first axis."""
+    parts = list(parts)
+    return Outcomes(
+        np.concatenate([p.cause for p in parts]),
+        np.concatenate([p.segment for p in parts]),
+        np.concatenate([p.joint for p in parts]),
+        np.concatenate([p.fraction for p in parts]),
+    )
+
+
+def one_outcome(
+    cause: Cause, segment: int = -1, joint: int = -1, fraction: float = 1.0
+) -> Outcomes:
+    """A single outcome, arrays of shape ()."""
+    return Outcomes(
+        np.array(cause, dtype=np.uint8),
+        np.array(segment, dtype=np.int16),
+        np.array(joint, dtype=np.int8),
+        np.array(fraction, dtype=np.float32),
+    )
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A joint path through the screw segments of one transferred demonstration.
+
+    Attributes:
+        q: (m, n) rad or m, from the start configuration to where the plan ended.
+        segment: (m,) the segment each point lies in, from 0.
+        s: (m,) how far along that segment, 0 to 1.
+        outcome: of shape ().
+    """
+
+    q: Array
+    segment: NDArray[np.int64]
+    s: Array
+    outcome: Outcomes
+
+    @property
+    def success(self) -> bool:
+        """Whether all guiding poses were reached within the limits."""
+        return bool(self.outcome.success)

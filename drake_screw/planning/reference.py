@@ -1,0 +1,127 @@
+"""The reference planner: ScLERP and the Jacobian pseudoinverse on the plant, step by step.
+
+It defines the question that the batch planner answers quickly. Along one constant-screw segment
+the hand's spatial twist is constant, so the joint path solves dq/ds = J(q)^+ V for s in [0, 1]
+(Mahalingam and Chakraborty, ICRA 2023). It is followed here by the classical Runge-Kutta method in
+small steps, each aimed anew at the guiding pose so that the path ends on it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from drake_screw.planning.contract import (
+    LENGTH,
+    POSITION_TOLERANCE,
+    RATE_LIMIT,
+    ROTATION_TOLERANCE,
+)
+from drake_screw.planning.outcomes import Cause, Plan, one_outcome
+from drake_screw.robot.arm import Arm
+from drake_screw.screws import inverse, log, rotation_angle, translation_distance
+from drake_screw.screws.rotations import Array
+
+CORRECTIONS = 4
+
+
+class ReferencePlanner:
+    """Plans one instance at a time on the MultibodyPlant.
+
+    Args:
+        arm: to plan for.
+        step: hand motion in one step, rad and (divided by LENGTH) m together.
+        joint_step: rad (or m), joint motion in one step, so that steps shrink where joints race.
+    """
+
+    def __init__(self, arm: Arm, *, step: float = 0.01, joint_step: float = 0.005) -> None:
+        self.arm = arm
+        self.step = step
+        self.joint_step = max(joint_step, step / 2.0)
+
+    def plan(self, q_start: ArrayLike, guides: ArrayLike) -> Plan:
+        """Follow constant screws from the start configuration through all guiding poses.
+
+        Args:
+            q_start: (n,) rad or m.
+            guides: (g, 4, 4) guiding poses X_WE.
+
+        Returns:
+            The plan, up to where it failed if it did.
+        """
+        path, segments, fractions = [np.array(q_start, dtype=float)], [0], [0.0]
+        outcome = one_outcome(Cause.SUCCESS)
+        for segment, X_WG in enumerate(np.asarray(guides, dtype=float)):
+            points, s, cause, joint = self._follow(path[-1], X_WG)
+            path += points
+            segments += [segment] * len(points)
+            fractions += s
+            if cause != Cause.SUCCESS:
+                outcome = one_outcome(cause, segment, joint, s[-1] if s else 0.0)
+                break
+        return Plan(np.array(path), np.array(segments), np.array(fractions), outcome)
+
+    def _follow(self, q: Array, X_WG: Array) -> tuple[list[Array], list[float], Cause, int]:
+        """One segment: its path after q, how far along each point is, cause and joint."""
+        points: list[Array] = []
+        fractions: list[float] = []
+        size, s = self._twist(q, X_WG)[1], 0.0
+        while s < 1.0:
+            V = self._twist(q, X_WG)[0] / (1.0 - s)
+            rate = float(np.linalg.norm(self._rates(q, V)))
+            if rate > RATE_LIMIT * size:
+                return points, fractions, Cause.UNREACHABLE, -1
+            h = min(self.step / max(size, 1e-12), self.joint_step / max(rate, 1e-12), 1.0 - s)
+            moved = self._runge_kutta(q, h * V)
+            margin, before = self.arm.margin(moved), self.arm.margin(q)
+            if (margin <= 0.0).any():
+                crossing = np.where(margin <= 0.0, before / (before - margin), np.inf)
+                joint, part = int(np.argmin(crossing)), float(crossing.min())
+                points.append(q + part * (moved - q))
+                fractions.append(s + part * h)
+                return points, fractions, Cause.JOINT_LIMIT, joint
+            q, s = moved, s + h
+            if 1.0 - s < 1e-9:
+                q, s = self._corrected(q, X_WG), 1.0
+            points.append(q)
+            fractions.append(s)
+        if (self.arm.margin(q) <= 0.0).any():
+            return points, fractions, Cause.JOINT_LIMIT, int(np.argmin(self.arm.margin(q)))
+        arrived = _near(self.arm.pose(q), X_WG, 1.0)
+        return points, fractions, Cause.SUCCESS if arrived else Cause.UNREACHABLE, -1
+
+    def _corrected(self, q: Array, X_WG: Array) -> Array:
+        """Newton's method onto the guiding pose, well within the tolerances."""
+        for _ in range(CORRECTIONS):
+            if _near(self.arm.pose(q), X_WG, 0.1):
+                break
+            q = q + self._rates(q, self._twist(q, X_WG)[0])
+        return q
+
+    def _twist(self, q: Array, X_WG: Array) -> tuple[Array, float]:
+        """The constant twist from here to the goal, and its size as the hand feels it."""
+        X_WE = self.arm.pose(q)
+        V = log(X_WG @ inverse(X_WE))
+        v_E = V[3:] + np.cross(V[:3], X_WE[:3, 3])
+        return V, float(np.hypot(np.linalg.norm(V[:3]), np.linalg.norm(v_E) / LENGTH))
+
+    def _rates(self, q: Array, V: Array) -> Array:
+        """J^+ V, the least joint rates that give the hand the twist V (about W's origin)."""
+        X_WE, J_WE = self.arm.pose_and_jacobian(q)
+        V_WE = np.concatenate([V[:3], V[3:] + np.cross(V[:3], X_WE[:3, 3])])
+        return np.linalg.lstsq(J_WE, V_WE, rcond=None)[0]
+
+    def _runge_kutta(self, q: Array, V: Array) -> Array:
+        k1 = self._rates(q, V)
+        k2 = self._rates(q + k1 / 2, V)
+        k3 = self._rates(q + k2 / 2, V)
+        k4 = self._rates(q + k3, V)
+        return q + (k1 + 2 * k2 + 2 * k3 + k4) / 6
+
+
+def _near(X_WE: Array, X_WG: Array, part: float) -> bool:
+    """Whether two poses agree within a part of the contract's tolerances."""
+    return bool(
+        translation_distance(X_WE, X_WG) <= part * POSITION_TOLERANCE
+        and rotation_angle(X_WE, X_WG) <= part * ROTATION_TOLERANCE
+    )
