@@ -1,0 +1,102 @@
+"""Reading scenario files, with errors that name the place, and writing them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import yaml
+
+from drake_screw.errors import ScenarioError
+from drake_screw.resources import SCENARIO_SUFFIXES, find_resource
+from drake_screw.scenario.checks import Problem, find_problems
+from drake_screw.scenario.convert import from_tree, to_plain
+from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.yaml_marks import Dumper, Entries, Node, Place, Scalar, locate, parse, put
+
+
+def load_scenario(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
+    """Reads a scenario file, fills in defaults and makes its paths absolute.
+
+    Opens no other file: a model or a recording that does not exist shows when it is used.
+
+    Args:
+        name_or_path: the name of a shipped scenario, or the path of a file.
+        overrides: texts ``key.path=value`` that replace values of the file, in order. The value is
+            YAML; lists are entered by place, from 0: ``objects.0.z=-0.06``. Paths are relative to
+            the working directory, while those of the file are relative to the file.
+
+    Raises:
+        ScenarioError: the file does not exist or cannot be used. Names file, line and key of
+            everything that is wrong, or the first thing where it is not even YAML.
+    """
+    file = find_resource("scenarios", name_or_path, SCENARIO_SUFFIXES)
+    tree = parse(_read(file), Place(file))
+    if tree is None or (isinstance(tree, Scalar) and tree.value is None):
+        raise ScenarioError("the file is empty", remedy="Start from a shipped one.", file=file)
+    if not isinstance(tree, Entries):
+        raise tree.place.error(
+            "expected keys with values, such as `name: pouring`", "See the shipped scenarios."
+        )
+    for text in overrides:
+        tree = _override(tree, text)
+    problems: list[Problem] = []
+    scenario = from_tree(Scenario, tree, (), problems)
+    problems = problems or list(find_problems(scenario))
+    if problems:
+        raise _error(problems, tree, file)
+    return replace(scenario, source=file)
+
+
+def dump_scenario(scenario: Scenario) -> str:
+    """The scenario as YAML with every key written out, which `load_scenario` reads back as equal.
+
+    Numbers are exact. Paths are absolute, so that the text can be put anywhere.
+    """
+    plain = to_plain(scenario)
+    return yaml.dump(
+        plain,
+        Dumper=Dumper,
+        default_flow_style=None,
+        sort_keys=False,
+        allow_unicode=True,
+        width=100,
+    )
+
+
+def _read(file: Path) -> str:
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        raise ScenarioError(f"the file cannot be read: {error.strerror}", file=file) from None
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ScenarioError(
+            f"the file is not UTF-8 text: byte 0x{data[error.start]:02x} has no meaning there",
+            remedy="Save it as UTF-8.",
+            file=file,
+            line=data.count(b"\n", 0, error.start) + 1,
+        ) from None
+
+
+def _override(tree: Node, text: str) -> Node:
+    path, equals, value = text.partition("=")
+    keys = tuple(path.strip().split("."))
+    place = Place(override=text)
+    if not equals or not all(keys):
+        raise place.error("expected key.path=value, such as coverage.beta=0.9")
+    return put(tree, keys, parse(value, place) or Scalar(None, place))
+
+
+def _error(problems: Sequence[Problem], tree: Node, file: Path) -> ScenarioError:
+    errors = [locate(tree, p.keys).error(f"{p.path}: {p.message}", p.remedy) for p in problems]
+    if len(errors) == 1:
+        return errors[0]
+    lines = []
+    for error in sorted(errors, key=lambda e: e.line or 0):
+        place = "" if error.line is None else f"line {error.line}: "
+        lines.append(f"  {place}{error.message}")
+        lines.extend([f"    {error.remedy}"] if error.remedy else [])
+    return ScenarioError("\n".join([f"{len(errors)} problems", *lines]), file=file)

@@ -1,0 +1,17 @@
+"""Fixtures shared by all tests."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder with recorded human demonstrations and reference outcomes, beside the checkout."""
+    folder = Path(os.environ.get("DRAKE_SCREW_SHARED", Path(__file__).parents[2] / "shared"))
+    if not (folder / "demos").is_dir():
+        pytest.skip(f"recorded demonstrations not found in {folder}")
+    return folder

@@ -1,0 +1,556 @@
+"""Loading scenario files: every error names its place, and what is written is read back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from drake_screw.errors import ModelError, ScenarioError
+from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
+from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.scenario.schema import (
+    AXES,
+    CoverageBlock,
+    DemonstrationsBlock,
+    Interval,
+    ObjectBlock,
+    PlannerBlock,
+    RegionsBlock,
+    RobotBlock,
+    Scenario,
+    SegmentationBlock,
+    TableBlock,
+    TeacherBlock,
+)
+
+SMALL = """\
+name: small
+robot:
+  model: baxter
+  joints: [a, b]
+  end_effector: hand
+  start: [0.1, -0.2]
+table:
+  center: [0.8, 0.2]
+  size: [0.7, 1.3]
+  top: -0.06
+objects:
+  - name: bowl
+    x: [0.7, 1.1]
+    y: [-0.2, 0.8]
+    z: 0
+    radius: 0.08
+    height: 0.06
+regions:
+  grid: {x: 4, y: 2}
+coverage:
+  beta: 0.9
+teacher:
+  kind: simulated
+  motion: pouring
+"""
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[..., Path]:
+    """Writes SMALL with some of its texts replaced."""
+
+    def write(*changes: tuple[str, str]) -> Path:
+        text = SMALL
+        for old, new in changes:
+            assert text.count(old) == 1, old
+            text = text.replace(old, new)
+        file = tmp_path / "small.yaml"
+        file.write_text(text, encoding="utf-8")
+        return file
+
+    return write
+
+
+def error_of(name_or_path: str | Path, *overrides: str) -> ScenarioError:
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario(name_or_path, overrides)
+    return caught.value
+
+
+@pytest.mark.parametrize("name", ["pouring", "scooping"])
+def test_shipped_scenarios_are_found_by_name(name: str) -> None:
+    scenario = load_scenario(name)
+    assert scenario.name == name
+    assert scenario.teacher.motion == name
+    assert scenario.source is not None
+    assert scenario.source.is_absolute()
+    assert scenario.source.name == f"{name}.yaml"
+    assert scenario.cells == ((4, 4, 1),)
+    assert scenario == load_scenario(scenario.source)
+
+
+def test_shipped_scenarios_spell_out_the_defaults() -> None:
+    scenario = load_scenario("pouring")
+    assert scenario.coverage == CoverageBlock()
+    assert scenario.demonstrations == DemonstrationsBlock()
+    assert scenario.segmentation == SegmentationBlock()
+    assert scenario.planner == PlannerBlock()
+
+
+def test_defaults_fill_what_is_left_out(write: Callable[..., Path]) -> None:
+    scenario = load_scenario(write())
+    assert scenario.robot.base == "base"
+    assert scenario.robot.parked == {}
+    assert scenario.table is not None
+    assert scenario.table.thickness == 0.04
+    assert scenario.objects[0].yaw == Interval(0, 0)
+    assert scenario.coverage == CoverageBlock(beta=0.9)
+    assert scenario.segmentation == SegmentationBlock()
+
+
+def test_numbers_without_a_point_and_empty_blocks_are_read(write: Callable[..., Path]) -> None:
+    file = write(
+        ("  beta: 0.9", "  beta: 9e-1\n  options:"),
+        ("    x: [0.7, 1.1]", "    x: [1, 1.1]\n    yaw: 1"),
+        ("teacher:", "segmentation:\n  # spacing: 0.01\nplanner: {tolerance: 1e-5}\nteacher:"),
+    )
+    scenario = load_scenario(file)
+    assert scenario.coverage == CoverageBlock(beta=0.9, options={})
+    assert scenario.objects[0].x == Interval(1.0, 1.1)
+    assert type(scenario.objects[0].x.lower) is float
+    assert scenario.objects[0].yaw == Interval(1, 1)
+    assert scenario.segmentation == SegmentationBlock()
+    assert scenario.planner.tolerance == 1e-5
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "message", "remedy"),
+    [
+        (
+            "beta: 0.9",
+            "betta: 0.9",
+            21,
+            "coverage.betta: unknown key",
+            "'beta'? Keys of coverage",
+        ),
+        ("regions:", "region:", 18, "region: unknown key", "Did you mean 'regions'?"),
+        ("name: small", "description: x", 1, "name: missing; expected text", "name of the scen"),
+        (
+            "  end_effector: hand\n",
+            "",
+            2,
+            "robot.end_effector: missing; expected text",
+            "name of the frame",
+        ),
+        (
+            "    radius: 0.08\n",
+            "",
+            12,
+            "objects.0.radius: missing; expected a number",
+            "radius of the object",
+        ),
+        (
+            "beta: 0.9",
+            "beta: high",
+            21,
+            "coverage.beta: expected a number, found text 'high'",
+            None,
+        ),
+        ("beta: 0.9", "beta: '0.9'", 21, "expected a number, found text '0.9'", "without quotes"),
+        ("beta: 0.9", "beta: true", 21, "coverage.beta: expected a number, found true", None),
+        ("beta: 0.9", "beta:", 21, "coverage.beta: expected a number, found nothing", None),
+        ("beta: 0.9", "beta: .nan", 21, "expected a number, found the number nan", None),
+        ("beta: 0.9", "beta: 1e999", 21, "expected a number, found the number inf", None),
+        ("beta: 0.9", "beta: [0.9]", 21, "expected a number, found a list of 1", None),
+        ("beta: 0.9", "beta: 0.9\nseed: 1.5", 22, "seed: expected a whole number", None),
+        (
+            "beta: 0.9",
+            f"beta: {'9' * 400}",
+            21,
+            "coverage.beta: expected a number, found a number far too large",
+            None,
+        ),
+        ("beta: 0.9", f"beta: {'9' * 9000}", 21, "coverage.beta: expected a number", None),
+        ("name: small", "name: 12", 1, "name: expected text, found the number 12", "in quotes"),
+        ("start: [0.1, -0.2]", "start: 3", 6, "robot.start: expected a list of numbers", None),
+        (
+            "start: [0.1, -0.2]",
+            "start:\n    - 0.1\n    - b",
+            8,
+            "robot.start.1: expected a number, found text 'b'",
+            None,
+        ),
+        (
+            "center: [0.8, 0.2]",
+            "center: [0.8]",
+            8,
+            "table.center: expected a list of 2 numbers, found a list of 1",
+            None,
+        ),
+        (
+            "x: [0.7, 1.1]",
+            "x: [0.7, 0.8, 1.1]",
+            13,
+            "objects.0.x: expected a list of 2 numbers, found a list of 3",
+            None,
+        ),
+        (
+            "x: [0.7, 1.1]",
+            "x: wide",
+            13,
+            "objects.0.x: expected a number or [lower, upper], found text 'wide'",
+            None,
+        ),
+        (
+            "grid: {x: 4, y: 2}",
+            "grid: {x: 4, y: two}",
+            19,
+            "regions.grid.y: expected a whole number, found text 'two'",
+            None,
+        ),
+        ("grid: {x: 4, y: 2}", "grid: 4", 19, "regions.grid: expected a mapping from names", None),
+        ("coverage:\n  beta: 0.9", "coverage: 0.9", 20, "coverage: expected a mapping with", None),
+        (
+            "teacher:",
+            "demonstrations:\n  initial: some\nteacher:",
+            23,
+            "demonstrations.initial: expected a whole number or a list of paths",
+            None,
+        ),
+        (
+            "teacher:",
+            "demonstrations:\n  initial: [r, 2]\nteacher:",
+            23,
+            "demonstrations.initial.1: expected a path, found the number 2",
+            None,
+        ),
+        ("beta: 0.9", "options: {a: [1]}", 21, "coverage.options.a: expected true or false", None),
+        ("beta: 0.9", "beta: !!set 1", 21, "coverage.beta: the tag", "Leave it out"),
+        ("beta: 0.9", "? [1]\n  : 2", 21, "coverage: a key must be a name", None),
+        (
+            "beta: 0.9",
+            "beta: 0.9\n  delta: 0.1\n  beta: 0.8",
+            23,
+            "coverage.beta: repeated key; it is already given in line 21",
+            "Keep one",
+        ),
+        (
+            "start: [0.1, -0.2]",
+            "start: [0.1, -0.2",
+            7,
+            "not valid YAML: expected ',' or ']'",
+            "line 6",
+        ),
+        ("beta: 0.9", "beta: 0.9\n\tdelta: 1", 22, "not valid YAML: found character '\\t'", None),
+        ("beta: 0.9", "beta: *high", 21, "not valid YAML: found undefined alias 'high'", None),
+        ("beta: 0.9", "beta: \x07", 21, "not valid YAML: the character #x07", "Delete it"),
+        ("teacher:", "---\nteacher:", 22, "not valid YAML: but found another document", None),
+        ("beta: 0.9", "beta: 1.5", 21, "coverage.beta: expected a number above 0 and below", None),
+        ("y: [-0.2, 0.8]", "y: [0.8, -0.2]", 14, "objects.0.y: lower limit 0.8 lies above", None),
+        (
+            "beta: 0.9",
+            "beta: 0.9\n  epsilon: 0.1",
+            22,
+            "coverage.epsilon: the run could never stop",
+            "below 0.1",
+        ),
+        ("beta: 0.9", "beta: 0.98", 20, "coverage.epsilon: the run could never stop", "beta"),
+        (
+            "motion: pouring",
+            "motion: puring",
+            24,
+            "teacher.motion: there is no 'puring'",
+            "Did you mean 'pouring'? Choices: pouring, scooping",
+        ),
+    ],
+)
+def test_errors_name_line_key_and_remedy(
+    write: Callable[..., Path], old: str, new: str, line: int, message: str, remedy: str | None
+) -> None:
+    file = write((old, new))
+    error = error_of(file)
+    assert (error.file, error.line) == (file, line)
+    assert message in error.message
+    assert str(error).startswith(f"{file}:{line}: {error.message}")
+    assert (remedy or "") in (error.remedy or "")
+
+
+def test_all_problems_are_told_at_once(write: Callable[..., Path]) -> None:
+    file = write(
+        ("beta: 0.9", "beta: high"), ("top: -0.06", "topp: -0.06"), ("  end_effector: hand", "")
+    )
+    error = error_of(file)
+    assert error.file == file
+    assert error.message.splitlines() == [
+        "3 problems",
+        "  line 2: robot.end_effector: missing; expected text",
+        "    Meaning: name of the frame that the demonstrations move.",
+        "  line 10: table.topp: unknown key",
+        "    Did you mean 'top'? Keys of table: center, size, top, thickness",
+        "  line 21: coverage.beta: expected a number, found text 'high'",
+    ]
+
+
+@pytest.mark.parametrize("text", ["", "\n# only a comment\n", "---\n", "~"])
+def test_empty_file(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "empty.yaml"
+    file.write_text(text)
+    error = error_of(file)
+    assert error.file == file
+    assert error.message == "the file is empty"
+
+
+@pytest.mark.parametrize("text", ["- a\n- b\n", "just text\n", "12\n"])
+def test_file_that_is_no_mapping(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "list.yaml"
+    file.write_text(text)
+    error = error_of(file)
+    assert (error.file, error.line) == (file, 1)
+    assert error.message.startswith("expected keys with values")
+
+
+def test_file_that_is_not_utf8(tmp_path: Path) -> None:
+    file = tmp_path / "latin.yaml"
+    file.write_bytes("name: small\ndescription: Schüssel\n".encode("latin-1"))
+    error = error_of(file)
+    assert (error.file, error.line) == (file, 2)
+    assert "not UTF-8 text: byte 0xfc" in error.message
+
+
+def test_byte_order_mark_is_ignored(write: Callable[..., Path]) -> None:
+    file = write()
+    scenario = load_scenario(file)
+    file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes())
+    assert load_scenario(file) == scenario
+
+
+@pytest.mark.parametrize("text", ["a: &a [*a]\n", "a: " + "[" * 500])
+def test_endless_nesting_is_refused(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "deep.yaml"
+    file.write_text(text)
+    error = error_of(file)
+    assert error.file == file
+    assert "nested too deeply" in error.message
+
+
+def test_file_that_cannot_be_read(
+    write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(self: Path) -> bytes:
+        raise PermissionError(13, "Permission denied")
+
+    file = write()
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+    error = error_of(file)
+    assert (error.file, error.message) == (file, "the file cannot be read: Permission denied")
+
+
+def test_unknown_name_lists_the_shipped_ones() -> None:
+    assert "Did you mean" not in (error_of("no/such/folder.yaml").remedy or "")
+    error = error_of("pourng")
+    assert error.message == "no scenario 'pourng'"
+    assert error.remedy is not None
+    assert error.remedy.startswith("Did you mean 'pouring'? Shipped scenarios: pouring, scooping.")
+
+
+def test_missing_file_suggests_its_neighbour(write: Callable[..., Path]) -> None:
+    file = write()
+    wrong = file.with_name("smal.yaml")
+    error = error_of(wrong)
+    assert error.message == f"no file '{wrong}'"
+    assert f"Did you mean '{file}'? " in (error.remedy or "")
+    assert "pouring, scooping" in (error.remedy or "")
+
+
+def test_missing_file_suggests_a_shipped_name() -> None:
+    assert "Did you mean 'pouring'?" in (error_of("poring.yaml").remedy or "")
+
+
+def test_folder_suggests_a_file_in_it(write: Callable[..., Path]) -> None:
+    file = write()
+    error = error_of(file.parent)
+    assert error.message == f"'{file.parent}' is a folder, not a scenario file"
+    assert f"Did you mean '{file}'?" in (error.remedy or "")
+
+
+def test_other_files_and_models_are_found_by_name(
+    write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = write()
+    monkeypatch.chdir(file.parent)
+    file.rename("plain")
+    assert load_scenario("plain").name == "small"
+    assert {"pouring", "scooping"} <= set(list_resources("scenarios"))
+    with pytest.raises(ModelError, match="no model 'baxterr'"):
+        find_resource("models", "baxterr", MODEL_SUFFIXES)
+
+
+def test_paths_are_seen_from_the_file(write: Callable[..., Path]) -> None:
+    file = write(
+        ("model: baxter", "model: arms/my.sdf"),
+        ("kind: simulated", "kind: recorded"),
+        ("motion: pouring", "folder: ../recordings\ndemonstrations:\n  initial: [one, /two]"),
+    )
+    scenario = load_scenario(file)
+    assert scenario.robot.model == str(file.parent / "arms" / "my.sdf")
+    assert scenario.teacher.folder == file.parent.parent / "recordings"
+    assert scenario.demonstrations.initial == (file.parent / "one", Path("/two"))
+    elsewhere = file.parent / "run" / "resolved.yaml"
+    elsewhere.parent.mkdir()
+    elsewhere.write_text(dump_scenario(scenario))
+    assert load_scenario(elsewhere) == scenario
+
+
+def test_overrides_replace_values_in_order(write: Callable[..., Path]) -> None:
+    scenario = load_scenario(
+        write(),
+        [
+            "coverage.beta=0.8",
+            "coverage.epsilon = 1e-2",
+            "objects.0.z=-0.5",
+            "objects.0.yaw=[-1, 1]",
+            "regions.grid.yaw=3",
+            "regions.grid.x=5",
+            "table=",
+            "robot.parked.c=0.25",
+            "coverage.options={batch: 10, exact: true, how: far=near}",
+            "coverage.beta=0.85",
+        ],
+    )
+    assert scenario.coverage == CoverageBlock(
+        beta=0.85, epsilon=0.01, options={"batch": 10, "exact": True, "how": "far=near"}
+    )
+    assert scenario.objects[0].z == -0.5
+    assert scenario.cells == ((5, 2, 3),)
+    assert scenario.table is None
+    assert scenario.robot.parked == {"c": 0.25}
+
+
+def test_override_reaches_keys_with_dots(write: Callable[..., Path]) -> None:
+    file = write(("{x: 4, y: 2}", "{bowl.x: 4}"))
+    assert load_scenario(file, ["regions.grid.bowl.x=7"]).cells == ((7, 1, 1),)
+
+
+def test_override_paths_are_seen_from_the_working_directory(
+    write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = write(("kind: simulated", "kind: recorded"), ("motion: pouring", "folder: here"))
+    other = file.parent / "other"
+    other.mkdir()
+    monkeypatch.chdir(other)
+    assert load_scenario(file, ["teacher.folder=there"]).teacher.folder == other / "there"
+    assert load_scenario(file).teacher.folder == file.parent / "here"
+
+
+@pytest.mark.parametrize(
+    ("override", "message", "remedy"),
+    [
+        ("coverage.beta", "expected key.path=value", None),
+        ("=3", "expected key.path=value", None),
+        ("coverage..beta=3", "expected key.path=value", None),
+        ("coverage.beta=[1", "not valid YAML: expected ',' or ']'", None),
+        ("coverage.options={a: 1, a: 2}", "a: repeated key; it is already given", None),
+        ("coverage.beta=high", "coverage.beta: expected a number, found text 'high'", None),
+        ("coverage.beta=2", "coverage.beta: expected a number above 0", None),
+        ("coverage.bta=0.5", "coverage.bta: unknown key", "Did you mean 'beta'?"),
+        ("coverage.beta.x=1", "coverage.beta is a single value; there is no x in it", None),
+        ("objects.1.z=0", "no entry 1 in the list objects", "Entries: 0"),
+        ("objects.bowl.z=0", "no entry bowl in the list objects", "Entries: 0"),
+        ("robot.joints.2=c", "no entry 2 in the list robot.joints", "Entries: 0 to 1"),
+        ("objects.0.z=", "objects.0.z: expected a number, found nothing", None),
+        ("coverage.epsilon=0.2", "coverage.epsilon: the run could never stop", None),
+        ("robot={model: a}", "robot.joints: missing", None),
+    ],
+)
+def test_override_errors_name_the_override(
+    write: Callable[..., Path], override: str, message: str, remedy: str | None
+) -> None:
+    error = error_of(write(), override)
+    assert f"--set {override}: " in str(error)
+    assert message in error.message
+    assert (remedy or "") in (error.remedy or "")
+
+
+numbers = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e300, max_value=1e300)
+positive = st.floats(min_value=5e-324, max_value=1e300)
+texts = st.text(
+    st.characters(codec="utf-8", exclude_categories=["Cs", "Cn"]), min_size=1, max_size=12
+) | st.sampled_from(["1e5", "0.5", "no", "null", "~", "1:30", "a: b", "- x", "#", "0x1", ".inf"])
+names = st.from_regex("[A-Za-z0-9_-]{1,8}", fullmatch=True)
+angles = st.floats(min_value=-3.14, max_value=3.14)
+
+
+@st.composite
+def intervals(draw: st.DrawFn, ends: st.SearchStrategy[float] = numbers) -> Interval:
+    lower, upper = sorted([draw(ends), draw(ends)])
+    return Interval(lower, upper)
+
+
+@st.composite
+def scenarios(draw: st.DrawFn) -> Scenario:
+    joints = draw(st.lists(texts, min_size=1, max_size=3, unique=True))
+    objects = tuple(
+        ObjectBlock(
+            name=name,
+            x=draw(intervals()),
+            y=draw(intervals()),
+            yaw=draw(intervals(angles)),
+            z=draw(numbers),
+            radius=draw(positive),
+            height=draw(positive),
+        )
+        for name in draw(st.lists(names, min_size=1, max_size=2, unique=True))
+    )
+    free = [f"{o.name}.{axis}" for o in objects for axis in AXES if not getattr(o, axis).fixed]
+    beta = draw(st.floats(min_value=0.01, max_value=0.99))
+    options = st.booleans() | st.integers() | numbers | texts
+    return Scenario(
+        name=draw(names),
+        description=draw(texts),
+        robot=RobotBlock(
+            model="baxter",
+            joints=tuple(joints),
+            end_effector=draw(texts),
+            start=tuple(draw(numbers) for _ in joints),
+            parked=draw(st.dictionaries(texts.filter(lambda t: t not in joints), numbers)),
+        ),
+        table=draw(
+            st.none()
+            | st.builds(
+                TableBlock,
+                center=st.tuples(numbers, numbers),
+                size=st.tuples(positive, positive),
+                top=numbers,
+                thickness=positive,
+            )
+        ),
+        objects=objects,
+        regions=RegionsBlock(grid={k: draw(st.integers(1, 9)) for k in free}),
+        coverage=CoverageBlock(
+            beta=beta,
+            epsilon=draw(st.floats(min_value=1e-9, max_value=0.9)) * (1 - beta),
+            options=draw(st.dictionaries(texts, options, max_size=3)),
+        ),
+        demonstrations=DemonstrationsBlock(
+            initial=draw(st.integers(0, 3) | st.just((Path("/a b"), Path("/c: #d")))), budget=3
+        ),
+        teacher=draw(
+            st.sampled_from(
+                [
+                    TeacherBlock(kind="recorded", folder=Path("/some/where")),
+                    TeacherBlock(kind="simulated", motion="scooping"),
+                ]
+            )
+        ),
+        seed=draw(st.integers(0, 2**128)),
+    )
+
+
+@settings(max_examples=40, deadline=None)
+@given(scenario=scenarios())
+def test_what_is_written_is_read_back(
+    scenario: Scenario, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    file = tmp_path_factory.getbasetemp() / "round_trip.yaml"
+    file.write_text(dump_scenario(scenario), encoding="utf-8", newline="")
+    assert load_scenario(file) == scenario
