@@ -1,0 +1,50 @@
+"""The strategies by name."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+from drake_screw.bandits.clopper_pearson import ClopperPearson
+from drake_screw.bandits.eprocess import EProcess
+from drake_screw.bandits.lucb import Lucb
+from drake_screw.bandits.median_elimination import MedianElimination
+from drake_screw.bandits.naive_pac import NaivePac
+from drake_screw.bandits.successive_elimination import SuccessiveElimination
+from drake_screw.bandits.ucb import Ucb
+from drake_screw.bandits.verdict import BanditError, Goal, Strategy
+from drake_screw.errors import unknown
+
+_CLASSES: dict[str, type] = {
+    strategy.name: strategy
+    for strategy in (
+        EProcess,
+        NaivePac,
+        ClopperPearson,
+        SuccessiveElimination,
+        Lucb,
+        Ucb,
+        MedianElimination,
+    )
+}
+
+STRATEGIES: tuple[str, ...] = tuple(_CLASSES)
+"""Names for `make_strategy`; the first is the default one."""
+
+
+def make_strategy(name: str, goal: Goal, **options: Any) -> Strategy:
+    """The strategy called `name`, for a goal, with options as in the docstring of its class.
+
+    Raises:
+        BanditError: no such strategy, or it has no such option.
+    """
+    if name not in _CLASSES:
+        message, remedy = unknown("bandit", name, "drake_screw", STRATEGIES)
+        raise BanditError(message, remedy=remedy)
+    strategy = _CLASSES[name]
+    valid = [field.name for field in fields(strategy) if field.name != "goal"]
+    for option in options:
+        if option not in valid:
+            message, remedy = unknown("option", option, f"bandit '{name}'", valid)
+            raise BanditError(message, remedy=remedy)
+    return strategy(goal, **options)
