@@ -1,0 +1,237 @@
+"""Where plans fail: the work area from above, as a person behind the robot's head sees it.
+
+x grows upwards, away from the robot; y grows to the left, as it does for the robot.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+from matplotlib.patheffects import withStroke
+
+from drake_screw.planning import Cause
+from drake_screw.tasks import GridRegions
+from drake_screw.visualization.cell_text import MARK, write_estimates
+from drake_screw.visualization.palette import (
+    ACCENT,
+    INK,
+    OUTCOME_COLORS,
+    OUTCOME_NAMES,
+    PAPER,
+    failure_color,
+    failure_map,
+)
+from drake_screw.visualization.rounds import Cells, Round, Sample, cells, details, headline, sample
+
+MOST_DOTS = 1500
+SHAPES = {
+    Cause.SUCCESS: ("o", 2.0),
+    Cause.JOINT_LIMIT: ("X", 4.2),
+    Cause.UNREACHABLE: ("^", 4.0),
+    Cause.COLLISION: ("s", 3.4),
+    Cause.NOT_TRIED: ("D", 3.0),
+}
+GRID = "#b9b4c6"
+
+
+def draw_heat_map(
+    ax: Axes, event: Round, regions: GridRegions, *, dots: int = MOST_DOTS, text: bool = True
+) -> Sample:
+    """Draw one round into `ax`: estimates, instances, demonstrations, weakest region, suggestion.
+
+    Cells are coloured by estimated failure probability, always on the scale from 0 to 1. Where
+    several regions lie above one another a cell shows the worst of them.
+
+    Args:
+        ax: gets limits, an equal aspect and axis labels.
+        event: the round.
+        regions: those of the run.
+        dots: most instances to draw; more are thinned to a random sample.
+        text: write estimates and counts into the cells, and numbers at the demonstrations.
+
+    Returns:
+        The instances that were drawn.
+    """
+    drawn = cells(regions, event.verdict.estimates)
+    shown = sample(event.evaluation, dots)
+    _frame(ax, drawn)
+    _draw_cells(ax, drawn, event)
+    _draw_instances(ax, drawn, shown)
+    if text:
+        write_estimates(ax, drawn, event)
+    _draw_robot(ax, text)
+    _draw_demonstrations(ax, drawn, event, text)
+    if event.suggestion is not None:
+        x, y = event.suggestion.x_y_yaw[drawn.object, :2]
+        look = _marker("*", ACCENT, 19.0 if text else 11.0, INK)
+        ax.plot(y, x, **look, zorder=8, gid="suggestion")
+    return shown
+
+
+def heat_map_figure(
+    event: Round, regions: GridRegions, *, scenario: str = "", dots: int = MOST_DOTS
+) -> Figure:
+    """A figure of one round with title, colour bar and legend; not registered with pyplot."""
+    drawn = cells(regions, event.verdict.estimates)
+    depth, width = drawn.upper.max(axis=0) - drawn.lower.min(axis=0)
+    height = float(np.clip(7.6 * depth / max(width, 1e-9), 2.2, 7.6))
+    figure = Figure(figsize=(9.6, height + 1.6), layout="constrained")
+    ax = figure.add_subplot()
+    figure.get_layout_engine().execute(figure)
+    shown = draw_heat_map(ax, event, regions, dots=dots)
+    title = f"{scenario}: {headline(event)}" if scenario else headline(event)
+    caption = fill(_caption(event, regions, drawn), 120)
+    blank = "\n" * (1 + caption.count("\n"))
+    ax.set_title(title + blank, fontsize=12, fontweight="bold", loc="left", color=INK)
+    offset = {"xytext": (0, 6), "textcoords": "offset points", "va": "bottom"}
+    ax.annotate(caption, (0, 1), xycoords="axes fraction", fontsize=8.5, color=INK, **offset)
+    add_colour_bar(figure, ax.inset_axes((1.015, 0.0, 0.02, 1.0)))
+    figure.legend(
+        handles=legend_handles(event, shown),
+        title=shown.statement,
+        title_fontsize=8.5,
+        fontsize=8.5,
+        loc="outside lower center",
+        ncols=7,
+        frameon=False,
+        columnspacing=1.4,
+        handletextpad=0.4,
+    )
+    return figure
+
+
+def save_heat_map(
+    event: Round,
+    regions: GridRegions,
+    stem: str | Path,
+    *,
+    scenario: str = "",
+    dots: int = MOST_DOTS,
+) -> tuple[Path, Path]:
+    """Write `heat_map_figure` as ``<stem>.png`` and ``<stem>.svg``, the same bytes every time.
+
+    Returns:
+        The two files.
+    """
+    return save_figure(heat_map_figure(event, regions, scenario=scenario, dots=dots), stem)
+
+
+def save_figure(figure: Figure, stem: str | Path) -> tuple[Path, Path]:
+    """Write a figure as ``<stem>.png`` and ``<stem>.svg`` without date, program or random ids."""
+    png, svg = Path(f"{stem}.png"), Path(f"{stem}.svg")
+    with mpl.rc_context({"svg.hashsalt": "drake_screw", "svg.fonttype": "path"}):
+        figure.savefig(png, dpi=160, metadata={"Software": None}, facecolor=PAPER)
+        figure.savefig(svg, metadata={"Date": None, "Creator": None}, facecolor=PAPER)
+    return png, svg
+
+
+def add_colour_bar(figure: Figure, ax: Axes) -> None:
+    """The scale of failure probability, 0 to 1, filling `ax`."""
+    bar = figure.colorbar(ScalarMappable(Normalize(0.0, 1.0), failure_map()), cax=ax)
+    bar.set_label("failure probability", fontsize=9, color=INK)
+    ax.tick_params(labelsize=8)
+
+
+def legend_handles(event: Round, shown: Sample) -> list[Line2D | Patch]:
+    """Legend entries of what a heat map of this round contains."""
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], **_dot(cause), label=name)
+        for cause, name in OUTCOME_NAMES.items()
+        if shown.count(cause)
+    ]
+    handles.append(Patch(fill=False, edgecolor=INK, linewidth=2.2, label="weakest region"))
+    if event.demonstrations:
+        handles.append(Line2D([], [], **_marker("o", PAPER, 10.0, INK), label="demonstration"))
+    if event.suggestion is not None:
+        handles.append(
+            Line2D([], [], **_marker("*", ACCENT, 14.0, INK), label="next demonstration")
+        )
+    return handles
+
+
+def _caption(event: Round, regions: GridRegions, drawn: Cells) -> str:
+    objects = regions.area.objects
+    parts = [details(event, regions)]
+    if drawn.stack > 1:
+        parts.append(f"each cell shows the worst of {drawn.stack} regions")
+    if len(objects) > 1:
+        parts.append(f"places of {objects[drawn.object].name}")
+    return "; ".join(parts)
+
+
+def _frame(ax: Axes, drawn: Cells) -> None:
+    lower, upper = drawn.lower.min(axis=0), drawn.upper.max(axis=0)
+    pad = np.where(upper > lower, 0.0, 0.05)
+    ax.set_xlim(upper[1] + pad[1], lower[1] - pad[1])
+    ax.set_ylim(lower[0] - pad[0], upper[0] + pad[0])
+    ax.set_aspect("equal")
+    ax.set_xlabel("← to the robot's left      y in m", fontsize=9, color=INK)
+    ax.set_ylabel("x in m      away from the robot →", fontsize=9, color=INK)
+    ax.tick_params(labelsize=8)
+
+
+def _draw_cells(ax: Axes, drawn: Cells, event: Round) -> None:
+    estimates = event.verdict.estimates
+    weakest = drawn.of_region[event.verdict.region]
+    for cell, region in enumerate(drawn.region):
+        (x0, y0), (x1, y1) = drawn.lower[cell], drawn.upper[cell]
+        box = {"xy": (y0, x0), "width": y1 - y0, "height": x1 - x0}
+        color = tuple(failure_color(estimates[region]))
+        ax.add_patch(Rectangle(**box, facecolor=color, edgecolor=GRID, gid=f"cell{cell}"))
+        if cell == weakest:
+            for edge, line, gid in ((PAPER, 5.0, "halo"), (INK, 2.4, "weakest")):
+                style = {"edgecolor": edge, "linewidth": line, "gid": gid}
+                ax.add_patch(Rectangle(**box, **style, fill=False, zorder=5, clip_on=False))
+
+
+def _draw_instances(ax: Axes, drawn: Cells, shown: Sample) -> None:
+    for cause in SHAPES:
+        x, y = shown.x_y_yaw[shown.cause == cause, drawn.object, :2].T
+        if len(x):
+            ax.plot(y, x, **_dot(cause), alpha=0.9, zorder=3, gid=f"instances {cause.name}")
+
+
+def _dot(cause: Cause) -> dict[str, Any]:
+    marker, size = SHAPES[cause]
+    color, edge = OUTCOME_COLORS[cause], 0.0 if cause == Cause.SUCCESS else 0.4
+    return _marker(marker, color, size, PAPER) | {"markeredgewidth": edge}
+
+
+def _marker(marker: str, color: str, size: float, edge: str) -> dict[str, Any]:
+    face = {"markerfacecolor": color, "markeredgecolor": edge, "markeredgewidth": 1.1}
+    return {"linestyle": "", "marker": marker, "markersize": size} | face
+
+
+def _draw_demonstrations(ax: Axes, drawn: Cells, event: Round, text: bool) -> None:
+    look = _marker("o", PAPER, MARK if text else 5.0, INK)
+    for number, demonstration in enumerate(event.demonstrations, start=1):
+        x, y = demonstration.X_WO[drawn.object, :2, 3]
+        ax.plot(y, x, **look, zorder=7, gid=f"demonstration {number}")
+        if text:
+            style = {"ha": "center", "va": "center_baseline", "fontsize": 7.5, "zorder": 7.5}
+            ax.text(y, x, str(number), color=INK, fontweight="bold", clip_on=True, **style)
+
+
+def _draw_robot(ax: Axes, text: bool) -> None:
+    """An arrow head on the edge nearest to the robot's base, the world's origin, if outside."""
+    y = float(np.clip(0.0, *sorted(ax.get_xlim())))
+    x = float(np.clip(0.0, *sorted(ax.get_ylim())))
+    if x == 0.0 and y == 0.0:
+        return
+    towards = (3, 0, np.degrees(np.arctan2(-y, -x)))
+    look = {"marker": towards, "markersize": 9 if text else 5, "color": INK}
+    ax.plot(y, x, zorder=7, clip_on=False, gid="robot", **look)
+    if text:
+        offset = {"xytext": (8, 4), "textcoords": "offset points"}
+        halo = [withStroke(linewidth=2.0, foreground=PAPER)]
+        ax.annotate("robot", (y, x), fontsize=8, color=INK, zorder=7, path_effects=halo, **offset)

@@ -1,0 +1,75 @@
+"""Colours that stay apart for colour-blind people, shared by figures and Meshcat.
+
+Every colour is sRGB. Meshcat takes the colours of points and of vertices as linear light, those of
+materials (`Rgba`) as sRGB: pass the former through `linear_from_srgb`.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.colors import Colormap, to_rgb
+from numpy.typing import ArrayLike
+
+from drake_screw.planning import Cause
+from drake_screw.screws.rotations import Array
+
+OUTCOME_COLORS = MappingProxyType(
+    {
+        Cause.SUCCESS: "#00795a",
+        Cause.JOINT_LIMIT: "#d55e00",
+        Cause.UNREACHABLE: "#7cc8ff",
+        Cause.COLLISION: "#111111",
+        Cause.NOT_TRIED: "#8a8a8a",
+    }
+)
+OUTCOME_NAMES = MappingProxyType(
+    {
+        Cause.SUCCESS: "success",
+        Cause.JOINT_LIMIT: "joint limit",
+        Cause.UNREACHABLE: "unreachable",
+        Cause.COLLISION: "collision",
+        Cause.NOT_TRIED: "not tried",
+    }
+)
+ACCENT = "#ffd60a"
+"""The suggested instance."""
+INK = "#1c1b22"
+PAPER = "#ffffff"
+UNKNOWN = "#d9d9d9"
+"""A region without samples."""
+
+
+def failure_map() -> Colormap:
+    """Matplotlib colour map of failure probability: 0 is nearly white, 1 is dark purple.
+
+    Lightness falls steadily along it (Brewer's BuPu), so it also works without colour vision and
+    in grey print. NaN, a region without samples, is grey.
+    """
+    return mpl.colormaps["BuPu"].with_extremes(bad=UNKNOWN)
+
+
+def failure_color(probability: ArrayLike) -> Array:
+    """sRGB of failure probabilities in [0, 1] or NaN; (...) to (..., 3)."""
+    return np.array(failure_map()(np.ma.masked_invalid(probability)))[..., :3]
+
+
+def ink_on(rgb: ArrayLike) -> str:
+    """The one of `INK` and `PAPER` that reads better on an sRGB colour (3,)."""
+    contrasts = {text: contrast(to_rgb(text), rgb) for text in (INK, PAPER)}
+    return max(contrasts, key=contrasts.__getitem__)
+
+
+def contrast(first: ArrayLike, second: ArrayLike) -> float:
+    """Contrast ratio, 1 to 21, of two sRGB colours (3,) as WCAG 2 defines it."""
+    weights = np.array([0.2126, 0.7152, 0.0722])
+    dark, light = sorted(float(linear_from_srgb(c) @ weights) for c in (first, second))
+    return (light + 0.05) / (dark + 0.05)
+
+
+def linear_from_srgb(rgb: ArrayLike) -> Array:
+    """Linear light from sRGB in [0, 1], elementwise (IEC 61966-2-1)."""
+    rgb = np.asarray(rgb, dtype=float)
+    return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)

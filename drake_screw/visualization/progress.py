@@ -1,0 +1,142 @@
+"""A whole run in one figure: every round's heat map, and how the weakest region improved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from drake_screw.planning import Cause
+from drake_screw.tasks import GridRegions
+from drake_screw.visualization.heat_map import (
+    add_colour_bar,
+    draw_heat_map,
+    legend_handles,
+    save_figure,
+)
+from drake_screw.visualization.palette import INK, OUTCOME_COLORS, failure_map
+from drake_screw.visualization.rounds import Round, Sample, cells
+
+COLUMNS = 3
+DOTS = 400
+
+
+def draw_progress(ax: Axes, events: Sequence[Round], *, beta: float | None = None) -> None:
+    """Draw into `ax` the failure probability of each round, of the weakest region and of all.
+
+    The line of the weakest is the largest estimate; its band reaches from the largest lower to the
+    largest upper confidence bound of all regions, at the strategy's own level. All regions
+    together are the mean of their estimates, as they are equally large.
+
+    Args:
+        ax: gets limits and axis labels.
+        events: at least one round, in order.
+        beta: coverage asked for; draws the line 1 - beta that must not be exceeded.
+    """
+    numbers = [event.round + 1 for event in events]
+    estimates, lower, upper = (
+        np.array([np.nanmax(getattr(event.verdict, field), initial=0.0) for event in events])
+        for field in ("estimates", "lower", "upper")
+    )
+    color = failure_map()(0.75)
+    low, high = np.minimum(lower, estimates), np.maximum(upper, estimates)
+    bars = np.array([estimates - low, high - estimates])
+    ax.fill_between(numbers, low, high, color=color, alpha=0.2, linewidth=0)
+    style = {"color": color, "marker": "o", "capsize": 3, "label": "weakest region"}
+    ax.errorbar(numbers, estimates, bars, **style).lines[0].set_gid("weakest")
+    known = [event.verdict.estimates[event.verdict.samples > 0] for event in events]
+    means = [mean.mean() if len(mean) else np.nan for mean in known]
+    style = {"color": INK, "marker": ".", "linestyle": ":", "gid": "mean"}
+    ax.plot(numbers, means, **style, label="all regions together")
+    ax.legend(fontsize=8, frameon=False, loc="upper right")
+    if beta is not None:
+        ax.axhline(1.0 - beta, color=INK, linestyle="--", linewidth=1.0, gid="goal")
+        place = {"transform": ax.get_yaxis_transform(), "va": "bottom", "fontsize": 8}
+        ax.text(0.005, 1.01 - beta, f"asked for: at most {1.0 - beta:g}", color=INK, **place)
+    done = [event.round + 1 for event in events if event.verdict.certified]
+    if done:
+        place = estimates[numbers.index(done[-1])]
+        star = {"marker": "o", "markersize": 10, "color": OUTCOME_COLORS[Cause.SUCCESS]}
+        ax.plot(done[-1], place, **star, linestyle="", zorder=4, gid="certified")
+        ax.annotate("certified", (done[-1], place), (0, 9), textcoords="offset points", fontsize=8)
+    ax.set_xlim(min(numbers) - 0.5, max(numbers) + 0.5)
+    ax.set_ylim(0.0, 1.03)
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    ax.set_xlabel("round", fontsize=9, color=INK)
+    ax.set_ylabel("failure probability", fontsize=9, color=INK)
+    ax.tick_params(labelsize=8)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def run_figure(
+    events: Sequence[Round],
+    regions: GridRegions,
+    *,
+    scenario: str = "",
+    beta: float | None = None,
+) -> Figure:
+    """Small heat maps of all rounds above the progress of the weakest region.
+
+    Args:
+        events: at least one round, in order.
+        regions: those of the run.
+        scenario: its name, for the title.
+        beta: coverage asked for.
+    """
+    columns = min(COLUMNS, len(events))
+    rows = -(-len(events) // columns)
+    drawn = cells(regions, events[0].verdict.estimates)
+    depth, width = drawn.upper.max(axis=0) - drawn.lower.min(axis=0)
+    row = float(np.clip(3.4 * depth / max(width, 1e-9), 0.9, 3.4)) + 0.55
+    figure = Figure(figsize=(11.0, rows * row + 3.4), layout="constrained")
+    grid = figure.add_gridspec(
+        rows + 1,
+        columns + 1,
+        height_ratios=[row] * rows + [2.2],
+        width_ratios=[1] * columns + [0.03],
+    )
+    shown: list[tuple[Round, Sample]] = []
+    for i, event in enumerate(events):
+        ax = figure.add_subplot(grid[i // columns, i % columns])
+        shown.append((event, draw_heat_map(ax, event, regions, dots=DOTS, text=False)))
+        count = len(event.demonstrations)
+        title = f"round {event.round + 1}: {count} demonstration{'' if count == 1 else 's'}"
+        ax.set_title(title, fontsize=9, color=INK)
+        ax.tick_params(labelsize=7)
+        ax.set_xlabel("")
+        ax.set_ylabel("")
+    add_colour_bar(figure, figure.add_subplot(grid[:rows, columns]))
+    draw_progress(figure.add_subplot(grid[rows, :]), events, beta=beta)
+    if scenario:
+        figure.suptitle(scenario, fontsize=13, fontweight="bold", color=INK, x=0.01, ha="left")
+    seen = {h.get_label(): h for event, s in shown for h in legend_handles(event, s)}
+    figure.legend(
+        handles=list(seen.values()),
+        loc="outside lower center",
+        ncols=7,
+        frameon=False,
+        fontsize=8.5,
+        title=f"at most {DOTS} instances of each round, drawn at random",
+        title_fontsize=8.5,
+    )
+    return figure
+
+
+def save_run_figure(
+    events: Sequence[Round],
+    regions: GridRegions,
+    stem: str | Path,
+    *,
+    scenario: str = "",
+    beta: float | None = None,
+) -> tuple[Path, Path]:
+    """Write `run_figure` as ``<stem>.png`` and ``<stem>.svg``, the same bytes every time.
+
+    Returns:
+        The two files.
+    """
+    return save_figure(run_figure(events, regions, scenario=scenario, beta=beta), stem)

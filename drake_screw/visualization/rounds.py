@@ -1,0 +1,170 @@
+"""What is drawn of a round. The events of an acquisition run have this shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_screw.bandits import Verdict
+from drake_screw.demonstrations import Demonstration
+from drake_screw.planning import Cause, Outcomes
+from drake_screw.screws.rotations import Array
+from drake_screw.tasks import GridRegions
+
+
+class Instances(Protocol):
+    """Task instances and their outcomes."""
+
+    @property
+    def x_y_yaw(self) -> Array:
+        """(N, k, 3) m, m, rad."""
+
+    @property
+    def outcomes(self) -> Outcomes:
+        """(N, D), one column for each demonstration in hand."""
+
+
+class Place(Protocol):
+    """Where a demonstration is wanted."""
+
+    @property
+    def region(self) -> int:
+        """The region it is wanted for."""
+
+    @property
+    def x_y_yaw(self) -> Array:
+        """(k, 3) m, m, rad."""
+
+
+class Round(Protocol):
+    """A finished round; `acquisition.RoundFinished` is one."""
+
+    @property
+    def round(self) -> int:
+        """Counted from 0; people see it counted from 1."""
+
+    @property
+    def demonstrations(self) -> Sequence[Demonstration]:
+        """Those in hand, in the order in which they were given."""
+
+    @property
+    def evaluation(self) -> Instances:
+        """The round's instances."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the strategy concluded."""
+
+    @property
+    def suggestion(self) -> Place | None:
+        """Where the next demonstration is wanted, if it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Some of a round's instances, few enough to draw.
+
+    Attributes:
+        x_y_yaw: (n, k, 3) m, m, rad.
+        cause: (n,) `Cause` values; see `instance_causes`.
+        total: how many instances the round had.
+    """
+
+    x_y_yaw: Array
+    cause: NDArray[np.uint8]
+    total: int
+
+    @property
+    def statement(self) -> str:
+        """How much of the round is shown, for people."""
+        if len(self.cause) == self.total:
+            return f"all {self.total:,} instances"
+        return f"{len(self.cause):,} of {self.total:,} instances, drawn at random"
+
+    def count(self, cause: Cause) -> int:
+        """How many of the shown instances ended so."""
+        return int(np.count_nonzero(self.cause == cause))
+
+
+def sample(evaluation: Instances, most: int) -> Sample:
+    """A uniform random subset of at most `most` instances, the same at every call."""
+    total = len(evaluation.x_y_yaw)
+    chosen = np.arange(total)
+    if total > most:
+        chosen = np.sort(np.random.default_rng(0).choice(total, most, replace=False))
+    return Sample(evaluation.x_y_yaw[chosen], instance_causes(evaluation.outcomes[chosen]), total)
+
+
+def instance_causes(outcomes: Outcomes) -> NDArray[np.uint8]:
+    """What became of each instance; outcomes (N, D) to `Cause` values (N,).
+
+    SUCCESS where any demonstration gives a plan. Otherwise the cause that ended the attempt that
+    came furthest, NOT_TRIED where there was none.
+    """
+    if outcomes.shape[-1] == 0:
+        return np.full(outcomes.shape[:-1], Cause.NOT_TRIED, dtype=np.uint8)
+    progress = outcomes.segment + np.clip(outcomes.fraction.astype(float), 0.0, 0.999)
+    progress = np.where(outcomes.cause == Cause.NOT_TRIED, -1.0, progress)
+    progress = np.where(outcomes.success, np.inf, progress)
+    best = progress.argmax(axis=-1)
+    return np.take_along_axis(outcomes.cause, best[..., None], axis=-1)[..., 0]
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """The regions seen from above: cells in x and y of one object.
+
+    Where several regions lie above one another (other yaws, other places of other objects) a cell
+    stands for the one with the largest estimate.
+
+    Attributes:
+        object: index of the object, the first that has room to move in both x and y.
+        lower, upper: (c, 2) x, y of the cells' corners in m.
+        region: (c,) the region that each cell stands for.
+        of_region: (K,) the cell that each region lies in.
+    """
+
+    object: int
+    lower: Array
+    upper: Array
+    region: NDArray[np.int64]
+    of_region: NDArray[np.int64]
+
+    @property
+    def stack(self) -> int:
+        """How many regions lie above one another."""
+        return len(self.of_region) // len(self.region)
+
+
+def cells(regions: GridRegions, estimates: NDArray[np.float64]) -> Cells:
+    """Project regions onto the table.
+
+    Args:
+        regions: of the work area.
+        estimates: (K,) failure probability, NaN where unknown.
+    """
+    room = regions.area.upper - regions.area.lower
+    drawn = int((room[:, :2] > 0.0).all(axis=1).argmax())
+    cell = regions.cell(np.arange(regions.K))[:, drawn]
+    of_region = cell[:, 0] + cell[:, 1] * regions.counts[drawn, 0]
+    rising = np.argsort(np.nan_to_num(estimates, nan=-1.0), kind="stable")
+    worst = np.empty(of_region.max() + 1, dtype=np.int64)
+    worst[of_region[rising]] = rising
+    lower, upper = regions.bounds(worst)
+    return Cells(drawn, lower[:, drawn, :2], upper[:, drawn, :2], worst, of_region)
+
+
+def headline(event: Round) -> str:
+    """A round and how it ended, in few words."""
+    count = len(event.demonstrations)
+    verdict = "certified" if event.verdict.certified else "not certified"
+    return f"round {event.round + 1}, {count} demonstration{'' if count == 1 else 's'}: {verdict}"
+
+
+def details(event: Round, regions: GridRegions) -> str:
+    """The weakest region of a round and the strategy's reason."""
+    return f"weakest region: {regions.name(event.verdict.region)}; {event.verdict.reason}"

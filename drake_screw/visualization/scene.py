@@ -1,0 +1,269 @@
+"""The workcell in Meshcat, with the heat map lying on the table.
+
+Everything hangs under these paths of the scene tree, where the browser's control panel can hide it:
+``/workcell`` (robot and table), ``/work_area``, ``/objects``, ``/demonstrations/01``, ...,
+``/instances`` (the last round's) and ``/rounds/01``, ....
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from pydrake.geometry import (
+    Meshcat,
+    MeshcatVisualizer,
+    MeshcatVisualizerParams,
+    Rgba,
+)
+from pydrake.perception import BaseField, Fields, PointCloud
+from pydrake.planning import RobotDiagramBuilder
+
+from drake_screw.demonstrations import Demonstration
+from drake_screw.planning import Cause
+from drake_screw.robot import Arm, ObjectConfig, RobotConfig, TableConfig
+from drake_screw.robot.workcell import add_robot, add_table
+from drake_screw.screws.rotations import Array
+from drake_screw.tasks import GridRegions, WorkArea
+from drake_screw.visualization import meshes
+from drake_screw.visualization.meshes import Mesh
+from drake_screw.visualization.page import Slide, slide, with_legend
+from drake_screw.visualization.palette import (
+    ACCENT,
+    INK,
+    OUTCOME_COLORS,
+    OUTCOME_NAMES,
+    PAPER,
+    failure_color,
+    linear_from_srgb,
+)
+from drake_screw.visualization.rounds import Cells, Round, Sample, cells, sample
+
+MOST_DOTS = 6_000
+CLAY = "#efeee6"
+HAND = "#3d3a4a"
+SKY = ([0.93, 0.94, 0.96], [0.70, 0.72, 0.76])
+AXES = ("#d81b60", "#2e9e4f", "#1e6fd9")
+
+
+class Scene:
+    """Draws a run into Meshcat, round by round.
+
+    The robot stands in its start configuration. Shown of a round are the regions coloured by
+    estimated failure probability with the weakest framed, instances coloured by outcome, the
+    suggested place as glowing objects; of the demonstrations in hand the path of the hand, the
+    guiding poses as triads and a numbered token where the object stood, with the objects
+    themselves at the latest one. Earlier rounds stay in the scene tree, hidden.
+
+    Args:
+        meshcat: drawn into; the paths above are replaced.
+        robot: model and start configuration.
+        table: drawn if there is one.
+        objects: how the objects look, in the order of the area's objects.
+        area: the work area.
+        scenario: its name, for the legend of the saved page.
+        dots: most instances to draw of a round; more are thinned to a random sample.
+
+    Raises:
+        ModelError: the robot's model cannot be read, or lacks a name the configuration asks for.
+    """
+
+    def __init__(
+        self,
+        meshcat: Meshcat,
+        robot: RobotConfig,
+        table: TableConfig | None,
+        objects: Sequence[ObjectConfig],
+        area: WorkArea,
+        *,
+        scenario: str = "",
+        dots: int = MOST_DOTS,
+    ) -> None:
+        self.meshcat = meshcat
+        self._objects = tuple(objects)
+        self._area = area
+        self._table = table
+        self._scenario = scenario
+        self._dots = dots
+        self._slides: dict[int, Slide] = {}
+        self._shown: Sample | None = None
+        for path in ("/workcell", "/work_area", "/objects", "/demonstrations", "/instances"):
+            meshcat.Delete(path)
+        meshcat.Delete("/rounds")
+        meshcat.SetProperty("/Grid", "visible", False)
+        meshcat.SetProperty("/Axes", "visible", False)
+        meshcat.SetProperty("/Background", "top_color", SKY[0])
+        meshcat.SetProperty("/Background", "bottom_color", SKY[1])
+        _draw_workcell(meshcat, robot, table)
+        self._draw_area()
+        self._aim_camera()
+
+    def show_round(self, event: Round, regions: GridRegions) -> Sample:
+        """Draw a finished round in place of the one before.
+
+        Returns:
+            The instances that were drawn.
+        """
+        path = _round_path(event.round)
+        for earlier in self._slides:
+            self.meshcat.SetProperty(_round_path(earlier), "visible", False)
+        self.meshcat.Delete(path)
+        drawn = cells(regions, event.verdict.estimates)
+        self._draw_regions(path, drawn, event)
+        if event.suggestion is not None:
+            self._draw_suggestion(f"{path}/next", event.suggestion.x_y_yaw)
+        self.meshcat.SetProperty(path, "visible", True)
+        self._draw_demonstrations(event.demonstrations, drawn)
+        shown = sample(event.evaluation, self._dots)
+        self._draw_instances(shown, drawn)
+        self._slides.pop(event.round, None)
+        self._slides[event.round] = slide(event, regions)
+        self._shown = shown
+        return shown
+
+    def save_html(self, path: str | Path) -> Path:
+        """Write the scene as one page that needs no network, with a legend.
+
+        It opens on the last round; buttons in the legend lead to the earlier ones.
+        """
+        page = self.meshcat.StaticHtml()
+        if self._shown is not None:
+            slides = list(self._slides.values())
+            page = with_legend(page, slides, self._shown, scenario=self._scenario)
+        path = Path(path)
+        path.write_text(page, encoding="utf-8")
+        return path
+
+    def _draw_area(self) -> None:
+        for item, z in zip(self._area.objects, self._area.z, strict=True):
+            lower, upper = np.array(item.lower[:2]) - 0.006, np.array(item.upper[:2]) + 0.006
+            outline = meshes.frame(lower, upper, self._above(float(z)), 0.006)
+            _set(self.meshcat, f"/work_area/{item.name}", outline, INK)
+
+    def _aim_camera(self) -> None:
+        lower, upper = self._area.lower[:, :2].min(axis=0), self._area.upper[:, :2].max(axis=0)
+        middle, z = (lower + upper) / 2.0, float(self._area.z.min())
+        size = max(float(np.linalg.norm(upper - lower)), 0.6)
+        target = np.array([*(middle * [0.8, 0.45]), z + 0.11 * size])
+        self.meshcat.SetCameraPose(target + size * np.array([1.0, -0.15, 0.75]), target)
+
+    def _draw_regions(self, path: str, drawn: Cells, event: Round) -> None:
+        z = self._above(float(self._area.z[drawn.object]))
+        tiles = meshes.rectangles(drawn.lower, drawn.upper, z)
+        color = _vertex_color(failure_color(event.verdict.estimates[drawn.region]))
+        self.meshcat.SetTriangleColorMesh(
+            f"{path}/regions", tiles.vertices.T, tiles.faces.T, np.repeat(color, 4, axis=0).T
+        )
+        weakest = drawn.of_region[event.verdict.region]
+        lower, upper = drawn.lower[weakest], drawn.upper[weakest]
+        inner = meshes.frame(lower, upper, z + 0.001, 0.014)
+        outer = meshes.frame(lower, upper, z + 0.0015, 0.008)
+        _set(self.meshcat, f"{path}/weakest/halo", inner, PAPER)
+        _set(self.meshcat, f"{path}/weakest/line", outer, INK)
+
+    def _draw_suggestion(self, path: str, x_y_yaw: Array) -> None:
+        for item, X_WO in zip(self._objects, self._area.X_WO(x_y_yaw), strict=True):
+            bowl = meshes.bowl(item.radius, item.height).moved(X_WO)
+            ring = meshes.ring(1.25 * item.radius, 0.008).moved(X_WO)
+            _set(self.meshcat, f"{path}/{item.name}/object", bowl, ACCENT, 0.65)
+            _set(self.meshcat, f"{path}/{item.name}/ring", ring, ACCENT)
+
+    def _draw_demonstrations(self, demonstrations: Sequence[Demonstration], drawn: Cells) -> None:
+        self.meshcat.Delete("/demonstrations")
+        self.meshcat.Delete("/objects")
+        for i, demonstration in enumerate(demonstrations):
+            path, latest = f"/demonstrations/{i + 1:02d}", i + 1 == len(demonstrations)
+            hand = _spaced(demonstration.path[:, :3, 3], 0.01)
+            if len(hand) > 1:
+                tube = meshes.tube(hand, 0.005 if latest else 0.003)
+                _set(self.meshcat, f"{path}/hand", tube, HAND, 1.0 if latest else 0.6)
+            _draw_triads(self.meshcat, f"{path}/guiding_poses", demonstration)
+            place = demonstration.X_WO[drawn.object, :3, 3]
+            lift = self._objects[drawn.object].height if latest else 0.0
+            token = np.eye(4)
+            token[:3, 3] = [*place[:2], self._above(float(place[2])) + lift]
+            _draw_token(self.meshcat, f"{path}/place", i + 1, token)
+        if demonstrations:
+            for item, X_WO in zip(self._objects, demonstrations[-1].X_WO, strict=True):
+                bowl = meshes.bowl(item.radius, item.height).moved(X_WO)
+                _set(self.meshcat, f"/objects/{item.name}", bowl, CLAY)
+
+    def _draw_instances(self, shown: Sample, drawn: Cells) -> None:
+        self.meshcat.Delete("/instances")
+        z = self._above(float(self._area.z[drawn.object])) + 0.002
+        for cause, name in OUTCOME_NAMES.items():
+            x_y = shown.x_y_yaw[shown.cause == cause, drawn.object, :2]
+            if len(x_y) == 0:
+                continue
+            cloud = PointCloud(len(x_y), Fields(BaseField.kXYZs))
+            cloud.mutable_xyzs()[:] = np.column_stack([x_y, np.full(len(x_y), z)]).T
+            size = 0.003 if cause == Cause.SUCCESS else 0.006
+            path = f"/instances/{name}"
+            self.meshcat.SetObject(path, cloud, size, _rgba(OUTCOME_COLORS[cause]))
+
+    def _above(self, z: float) -> float:
+        """Just above the table, so that what lies flat at height z is not inside of it."""
+        return max(z, self._table.top if self._table is not None else z) + 0.002
+
+
+def _round_path(number: int) -> str:
+    return f"/rounds/{number + 1:02d}"
+
+
+def _draw_workcell(meshcat: Meshcat, robot: RobotConfig, table: TableConfig | None) -> None:
+    builder = RobotDiagramBuilder(time_step=0.0)
+    plant = builder.plant()
+    add_robot(builder.parser(), robot)
+    if table is not None:
+        add_table(plant, table)
+    plant.Finalize()
+    arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
+    parameters = MeshcatVisualizerParams(prefix="/workcell")
+    MeshcatVisualizer.AddToBuilder(builder.builder(), builder.scene_graph(), meshcat, parameters)
+    diagram = builder.Build()
+    context = diagram.CreateDefaultContext()
+    positions = arm.full_positions(np.array(robot.start, dtype=float))
+    plant.SetPositions(plant.GetMyMutableContextFromRoot(context), positions)
+    diagram.ForcedPublish(context)
+
+
+def _draw_triads(meshcat: Meshcat, path: str, demonstration: Demonstration) -> None:
+    X_WE = demonstration.transfer(demonstration.X_WO)
+    for axis, color in enumerate(AXES):
+        arms = [meshes.tube([X[:3, 3], X[:3, 3] + 0.035 * X[:3, axis]], 0.005) for X in X_WE]
+        if arms:
+            _set(meshcat, f"{path}/{'xyz'[axis]}", meshes.join(arms), color)
+
+
+def _draw_token(meshcat: Meshcat, path: str, number: int, X_WT: Array) -> None:
+    _set(meshcat, f"{path}/rim", meshes.disc(0.030, 0.003).moved(X_WT), INK)
+    _set(meshcat, f"{path}/token", meshes.disc(0.027, 0.004).moved(X_WT), PAPER)
+    X_TN = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0.005], [0, 0, 0, 1.0]])
+    _set(meshcat, f"{path}/number", meshes.number(number, 0.026).moved(X_WT @ X_TN), INK)
+
+
+def _spaced(path: Array, spacing: float) -> Array:
+    """A path (m, 3) resampled to steps of about `spacing` m, or fewer points if it is shorter."""
+    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    places = np.linspace(0.0, length[-1], 1 + round(length[-1] / spacing))
+    return np.stack([np.interp(places, length, p) for p in path.T], axis=-1)
+
+
+def _vertex_color(rgb: Array) -> Array:
+    """Vertex colours that look like the sRGB colours (..., 3) under Meshcat's own lights.
+
+    On screenshots the lights and the tone curve brighten all but the lightest by about half; the
+    correction was chosen by eye.
+    """
+    linear = linear_from_srgb(rgb)
+    return linear * (0.7 + 0.3 * linear)
+
+
+def _set(meshcat: Meshcat, path: str, mesh: Mesh, color: str, opacity: float = 1.0) -> None:
+    meshcat.SetTriangleMesh(path, mesh.vertices.T, mesh.faces.T, _rgba(color, opacity))
+
+
+def _rgba(color: str, opacity: float = 1.0) -> Rgba:
+    return Rgba(*to_rgb(color), opacity)

@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from drake_screw.visualization import draw_progress, run_figure, save_run_figure
+
+
+@pytest.fixture
+def events(make_round, regions):
+    failures = [[10, 4, 6, 0, 0, 0], [0, 4, 2, 0, 0, 0], [0, 0, 3, 0, 0, 0], [0] * 6]
+    return [make_round(regions, f, number=i, demonstrations=i + 1) for i, f in enumerate(failures)]
+
+
+def line(ax, gid: str) -> np.ndarray:
+    (found,) = [item for item in ax.lines if item.get_gid() == gid]
+    return np.array(found.get_data(), dtype=float).T
+
+
+def test_the_line_is_the_largest_estimate_of_each_round(events) -> None:
+    ax = Figure().add_subplot()
+    draw_progress(ax, events, beta=0.9)
+    np.testing.assert_allclose(line(ax, "weakest"), [[1, 1.0], [2, 0.4], [3, 0.3], [4, 0.0]])
+    np.testing.assert_allclose(line(ax, "mean")[:, 1], [20 / 60, 6 / 60, 3 / 60, 0.0])
+    np.testing.assert_allclose(line(ax, "goal")[:, 1], 0.1)
+    np.testing.assert_allclose(line(ax, "certified"), [[4, 0.0]])
+    assert "certified" in [t.get_text() for t in ax.texts]
+
+
+def test_regions_without_samples_do_not_count(make_round, regions) -> None:
+    samples = [10, 10, 0, 0, 0, 0]
+    ax = Figure().add_subplot()
+    draw_progress(ax, [make_round(regions, [4, 2, 0, 0, 0, 0], samples=samples)])
+    np.testing.assert_allclose(line(ax, "weakest"), [[1, 0.4]])
+    np.testing.assert_allclose(line(ax, "mean"), [[1, 0.3]])
+
+
+def test_every_round_has_its_heat_map(events, regions) -> None:
+    figure = run_figure(events, regions, scenario="pouring", beta=0.95)
+    titles = [ax.get_title() for ax in figure.axes if ax.get_title()]
+    assert titles == [f"round {i}: {i} demonstration{'s' * (i > 1)}" for i in range(1, 5)]
+
+
+def test_one_round_is_enough(tmp_path, events, regions) -> None:
+    files = save_run_figure(events[:1], regions, tmp_path / "run")
+    again = save_run_figure(events[:1], regions, tmp_path / "again")
+    for one, other in zip(files, again, strict=True):
+        assert one.read_bytes() == other.read_bytes()
