@@ -47,12 +47,12 @@ class Outcomes:
     @property
     def success(self) -> NDArray[np.bool_]:
         """Which plans succeeded."""
-        return np.equal(self.cause, Cause.SUCCESS)
+        return np.asarray(self.cause == np.uint8(Cause.SUCCESS))
 
     @property
     def any_success(self) -> NDArray[np.bool_]:
         """(N,) of outcomes (N, D): which instances some demonstration solves."""
-        return self.success.any(axis=-1)
+        return np.asarray(self.success.any(axis=-1))
 
     @property
     def furthest_segment(self) -> NDArray[np.int64]:

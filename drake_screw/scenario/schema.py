@@ -200,7 +200,7 @@ class SegmentationBlock:
 
 @dataclass(frozen=True, kw_only=True)
 class PlannerBlock:
-    tolerance: float = key("error per step of the joint path", unit="rad", default=1e-5, above=0)
+    tolerance: float = key("error per step of the joint path", unit="rad", default=1e-4, above=0)
 
 
 @dataclass(frozen=True, kw_only=True)

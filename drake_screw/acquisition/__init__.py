@@ -1,0 +1,39 @@
+"""The self-evaluation loop and the teachers."""
+
+from drake_screw.acquisition.evaluation import Evaluator
+from drake_screw.acquisition.events import (
+    DemonstrationAdded,
+    DemonstrationRequested,
+    Evaluation,
+    Event,
+    Finished,
+    RegionsEvaluated,
+    RoundFinished,
+    RoundStarted,
+    Status,
+    Suggestion,
+)
+from drake_screw.acquisition.loop import acquire
+from drake_screw.acquisition.recorded import RecordedTeacher
+from drake_screw.acquisition.suggestion import random_suggestion, suggest
+from drake_screw.acquisition.teacher import Lesson, Teacher
+
+__all__ = [
+    "DemonstrationAdded",
+    "DemonstrationRequested",
+    "Evaluation",
+    "Evaluator",
+    "Event",
+    "Finished",
+    "Lesson",
+    "RecordedTeacher",
+    "RegionsEvaluated",
+    "RoundFinished",
+    "RoundStarted",
+    "Status",
+    "Suggestion",
+    "Teacher",
+    "acquire",
+    "random_suggestion",
+    "suggest",
+]

@@ -1,0 +1,134 @@
+"""What the acquisition loop tells its listeners, in the order in which it happens."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_screw.bandits import Verdict
+from drake_screw.demonstrations import Demonstration, Recording
+from drake_screw.planning import Outcomes
+from drake_screw.screws.rotations import Array
+
+
+class Status(StrEnum):
+    """How a run ended, or that it has not."""
+
+    RUNNING = "running"
+    CERTIFIED = "certified"
+    INSUFFICIENT = "insufficient"
+    INTERRUPTED = "interrupted"
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """The instances of one round and what planning made of them.
+
+    Attributes:
+        x_y_yaw: (N, k, 3) m, m, rad.
+        region: (N,) the region each was drawn in.
+        outcomes: (N, D), one column for each demonstration in hand.
+    """
+
+    x_y_yaw: Array
+    region: NDArray[np.int64]
+    outcomes: Outcomes
+
+    @property
+    def failed(self) -> NDArray[np.bool_]:
+        """(N,) no demonstration gives a plan."""
+        return ~self.outcomes.any_success
+
+
+@dataclass(frozen=True, eq=False)
+class Suggestion:
+    """Where the next demonstration should be given.
+
+    Attributes:
+        region: the region that needs it.
+        x_y_yaw: (k, 3) the instance to demonstrate at.
+        segment: screw segment, from 0, in which the best attempt there failed; None where there
+            was no attempt (an initial demonstration).
+    """
+
+    region: int
+    x_y_yaw: Array
+    segment: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class RoundStarted:
+    """A round of evaluation begins with these demonstrations in hand."""
+
+    round: int
+    demonstrations: tuple[Demonstration, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RegionsEvaluated:
+    """Some more instances of a round were planned; the counts (K,) are of the round so far."""
+
+    round: int
+    samples: NDArray[np.int64]
+    failures: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class RoundFinished:
+    """A round's verdict, and the next suggestion unless it certified."""
+
+    round: int
+    demonstrations: tuple[Demonstration, ...]
+    evaluation: Evaluation
+    verdict: Verdict
+    suggestion: Suggestion | None
+
+
+@dataclass(frozen=True, eq=False)
+class DemonstrationRequested:
+    """The teacher is asked. `round` is the round the demonstration will first be used in."""
+
+    round: int
+    number: int
+    suggestion: Suggestion
+
+
+@dataclass(frozen=True, eq=False)
+class DemonstrationAdded:
+    """The teacher answered; `remark` says what people should know of the answer."""
+
+    round: int
+    number: int
+    recording: Recording
+    demonstration: Demonstration
+    remark: str
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """The run is over.
+
+    Attributes:
+        status: CERTIFIED or INSUFFICIENT.
+        reason: why it ended, for people.
+        verdict: of the last round; None if none was evaluated.
+        demonstrations: all in hand.
+    """
+
+    status: Status
+    reason: str
+    verdict: Verdict | None
+    demonstrations: tuple[Demonstration, ...]
+
+
+Event = (
+    RoundStarted
+    | RegionsEvaluated
+    | RoundFinished
+    | DemonstrationRequested
+    | DemonstrationAdded
+    | Finished
+)

@@ -1,0 +1,146 @@
+"""The self-evaluation loop: evaluate, ask for a demonstration where it is needed, repeat.
+
+It is Algorithm 1 of Das et al. (arXiv 2410.18275) with any strategy in the place of Algorithm 2,
+written as a generator of events: progress bars, files and Meshcat are listeners, and unknown here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from drake_screw.acquisition.events import (
+    DemonstrationAdded,
+    DemonstrationRequested,
+    Evaluation,
+    Event,
+    Finished,
+    RoundFinished,
+    RoundStarted,
+    Status,
+    Suggestion,
+)
+from drake_screw.acquisition.suggestion import random_suggestion, suggest
+from drake_screw.acquisition.teacher import Teacher
+from drake_screw.bandits import Verdict
+from drake_screw.demonstrations import Demonstration, Recording
+from drake_screw.tasks import GridRegions
+
+Evaluate = Callable[[int, tuple[Demonstration, ...], int], tuple[Evaluation, Verdict]]
+"""(round, demonstrations, attempt) to what was seen and what it shows; see `Evaluator.evaluate`."""
+
+TRIES = 3
+"""Failed instances a teacher is asked about before a run gives up."""
+
+# Apart from every (round, region, chunk) of the task instances:
+_TIES, _LESSON, _PLACE = 2**31, 2**31 + 1, 2**31 + 2
+
+
+class _InHand(NamedTuple):
+    recordings: tuple[Recording, ...]
+    demonstrations: tuple[Demonstration, ...]
+
+
+def acquire(
+    evaluate: Evaluate,
+    teacher: Teacher,
+    learn: Callable[[Recording], Demonstration],
+    regions: GridRegions,
+    *,
+    initial: int | Sequence[Recording],
+    budget: int,
+    seed: int,
+) -> Iterator[Event]:
+    """Acquire demonstrations until every region is covered, or as far as it goes.
+
+    Args:
+        evaluate: one round of self-evaluation.
+        teacher: gives demonstrations.
+        learn: turns a recording into a demonstration.
+        regions: the bandit's arms.
+        initial: recordings to start from, or how many to ask for at random places.
+        budget: most demonstrations in total.
+        seed: of the run; with the arguments it determines everything.
+
+    Yields:
+        Events; the last is `Finished`.
+    """
+    hand = _InHand((), ())
+    if isinstance(initial, int):
+        for number in range(initial):
+            place = random_suggestion(regions, _rng(seed, number, _PLACE))
+            added, remark = yield from _ask(teacher, learn, hand, 0, (place,), seed)
+            if added is None:
+                yield _finished(f"no initial demonstration: {remark}", None, hand)
+                return
+            hand = added
+    else:
+        recordings = tuple(initial)
+        hand = _InHand(recordings, tuple(learn(r) for r in recordings))
+    attempt = 1
+    for round in range(budget + 1):
+        yield RoundStarted(round, hand.demonstrations)
+        evaluation, verdict = evaluate(round, hand.demonstrations, attempt)
+        attempt += verdict.attempted
+        places = (
+            ()
+            if verdict.certified
+            else suggest(evaluation, verdict.region, _rng(seed, round, _TIES), count=TRIES)
+        )
+        yield RoundFinished(
+            round,
+            hand.demonstrations,
+            evaluation,
+            verdict,
+            places[0] if places else None,
+        )
+        if verdict.certified:
+            yield Finished(Status.CERTIFIED, verdict.reason, verdict, hand.demonstrations)
+            return
+        if len(hand.demonstrations) >= budget:
+            reason = f"the budget of {budget} demonstrations is used up"
+            yield _finished(reason, verdict, hand)
+            return
+        added, remark = yield from _ask(teacher, learn, hand, round + 1, places, seed)
+        if added is None:
+            yield _finished(remark, verdict, hand)
+            return
+        hand = added
+
+
+def _ask(
+    teacher: Teacher,
+    learn: Callable[[Recording], Demonstration],
+    hand: _InHand,
+    round: int,
+    places: Sequence[Suggestion],
+    seed: int,
+) -> Generator[Event, None, tuple[_InHand | None, str]]:
+    """Ask the teacher at one place after the other; the generator's value is (in hand, remark)."""
+    number, remark = len(hand.recordings), "there is no failed instance to demonstrate"
+    for i, place in enumerate(places):
+        yield DemonstrationRequested(round, number, place)
+        lesson = teacher.demonstrate(
+            place, number=number, used=hand.recordings, rng=_rng(seed, number, _LESSON, i)
+        )
+        remark = lesson.remark
+        if lesson.recording is not None:
+            demonstration = learn(lesson.recording)
+            yield DemonstrationAdded(round, number, lesson.recording, demonstration, remark)
+            return (
+                _InHand(
+                    (*hand.recordings, lesson.recording), (*hand.demonstrations, demonstration)
+                ),
+                remark,
+            )
+    return None, remark
+
+
+def _finished(reason: str, verdict: Verdict | None, hand: _InHand) -> Finished:
+    return Finished(Status.INSUFFICIENT, reason, verdict, hand.demonstrations)
+
+
+def _rng(seed: int, *key: int) -> np.random.Generator:
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))

@@ -1,0 +1,133 @@
+"""The compiled code of an arm: written to a file of its own, compiled once, loaded ever after.
+
+The file's name carries a hash of all that its machine code depends on, so it is never stale, and
+numba keeps the machine code next to it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import sys
+import tempfile
+from pathlib import Path
+from types import ModuleType
+
+import numba
+
+from drake_screw.planning import contract, outcomes
+from drake_screw.planning.compiled import code_hints, crossing, lanes, rows, step_code
+from drake_screw.planning.compiled.link_frames import LinkFrames
+
+_SOURCES = (code_hints, contract, crossing, lanes, outcomes, rows)
+"""Modules that are compiled into that of an arm."""
+
+_MODULE = '''"""Plans of one arm, {lanes} at a time; written by drake_screw.planning.compiled."""
+
+from math import sqrt
+
+import numpy as np
+from numba import njit, uintp
+from numpy import ceil, floor
+
+from drake_screw.planning.compiled.code_hints import lane_function
+from drake_screw.planning.compiled.lanes import begin_plan, next_unit, save_start, settle
+
+lane_code = njit(error_model="numpy", fastmath={{"contract", "reassoc", "nsz", "arcp"}})
+
+
+{functions}
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def prepare(b, rows, q_start, start):
+    """Fills start, (M, s), with what `arrive` says of the start configurations (M, n)."""
+    for m in range(len(q_start)):
+        for j in range(q_start.shape[1]):
+            for i in range({lanes}):
+                b[(rows.q_stage + j) * {lanes} + i] = q_start[m, j]
+        arrive(b)
+        save_start(b, 0, rows, start, m)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def run(b, lanes, queue, rows, problem, answers):
+    """Works through the units of work in a queue."""
+    for i in range({lanes}):
+        next_unit(i, lanes, queue)
+        if lanes[i, 0] >= 0:
+            begin_plan(b, i, lanes, rows, problem)
+    while True:
+        aim(b)
+{stages}        arrive(b)
+        judge(b)
+        if settle(b, lanes, queue, rows, problem, answers) == 0:
+            return
+'''
+
+
+def source(
+    frames: LinkFrames, lower: step_code.Vector, upper: step_code.Vector, s: step_code.Settings
+) -> tuple[str, int]:
+    """Source text of an arm's module, and the number of rows of its blocks."""
+    n = len(frames.revolute)
+    arrive, aim, count = step_code.arrive_and_aim(frames, s)
+    stages = range(1, len(step_code.TABLEAU) + 1)
+    functions = [step_code.blend(n, stage) for stage in stages]
+    functions += [step_code.rate(frames), arrive, aim, step_code.judge(lower, upper, s)]
+    calls = "".join(
+        f"        blend_{k}(b)\n" + ("        rate(b)\n" if k < len(stages) else "") for k in stages
+    )
+    text = _MODULE.format(lanes=rows.LANES, functions="\n\n".join(functions), stages=calls)
+    return text, count
+
+
+def load(text: str) -> ModuleType:
+    """The module of this source text, from the cache if it was ever loaded before."""
+    parts = [
+        text,
+        numba.__version__,
+        *(Path(m.__file__ or "").read_text() for m in _SOURCES),
+    ]
+    name = "arm_" + hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
+    if name in sys.modules:
+        return sys.modules[name]
+    path = _folder() / f"{name}.py"
+    if not path.exists() or path.read_text() != text:
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
+            file.write(text)
+        os.replace(file.name, path)
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def is_compiled(module: ModuleType) -> bool:
+    """Whether the module's machine code was made before, in this process or an earlier one."""
+    return _mark(module).exists()
+
+
+def mark_compiled(module: ModuleType) -> None:
+    """Remember that the module has been used, and so compiled and cached."""
+    if not is_compiled(module):
+        _mark(module).touch()
+
+
+def _mark(module: ModuleType) -> Path:
+    return Path(str(module.__file__)).with_suffix(".compiled")
+
+
+def _folder() -> Path:
+    """Where arm modules are kept: numba's cache folder if it has one, else the user's."""
+    user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user) / "drake_screw"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="drake_screw_"))

@@ -1,0 +1,250 @@
+"""What happens to one lane of a block at a time: start a plan, end a segment, end the plan.
+
+Compiled as part of the code of an arm (kernel.py), and not on its own.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit, uintp
+from numpy.typing import NDArray
+
+from drake_screw.planning.compiled.crossing import first_crossing
+from drake_screw.planning.compiled.rows import (
+    ACCEPTED,
+    AIM,
+    EVENT,
+    HAND,
+    LANES,
+    NEXT_STEP,
+    OFF_PLACE,
+    OFF_TURN,
+    POSE,
+    PROGRESS,
+    RATE_END,
+    RATE_START,
+    ROOM,
+    STEP,
+    TARGET,
+    at,
+)
+from drake_screw.planning.contract import POSITION_TOLERANCE, ROTATION_TOLERANCE
+from drake_screw.planning.outcomes import Cause
+
+CORRECTIONS = 3
+"""A segment that misses its guiding pose is followed by a small one to it, at most this often."""
+
+SUCCESS, JOINT_LIMIT = int(Cause.SUCCESS), int(Cause.JOINT_LIMIT)
+UNREACHABLE = int(Cause.UNREACHABLE)
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+class Problem(NamedTuple):
+    """What to plan. B is the arm's base frame, N instances, D demonstrations, k objects.
+
+    Attributes:
+        X_BO: (N, k, 4, 4) object poses.
+        X_OE: (g, 4, 4) guiding poses of all demonstrations, one after the other.
+        objects: (g,) the object each belongs to.
+        first: (D + 1,) where each demonstration's begin; the last entry is g.
+        order: (N or 1, D) demonstrations in the order in which to try them.
+        start: (N or 1, s) start configurations, each with what `arrive` says of them.
+        limits: (2, n) lower and upper joint limits.
+        rate_max2: square of the bound on |dq/ds| per hand motion.
+    """
+
+    X_BO: Array
+    X_OE: Array
+    objects: Index
+    first: Index
+    order: Index
+    start: Array
+    limits: Array
+    rate_max2: float
+
+
+class Places(NamedTuple):
+    """Rows of a block that depend on the arm: of q, q_stage and kept values; their number."""
+
+    q: int
+    q_stage: int
+    kept: int
+    end: int
+
+
+class Answers(NamedTuple):
+    """(N, D) arrays, by instance and demonstration."""
+
+    cause: NDArray[np.uint8]
+    segment: NDArray[np.int16]
+    joint: NDArray[np.int8]
+    fraction: NDArray[np.float32]
+    steps: NDArray[np.int32]
+
+    def part(self, instances: slice) -> Answers:
+        """Views on the answers of some instances."""
+        return Answers(
+            self.cause[instances],
+            self.segment[instances],
+            self.joint[instances],
+            self.fraction[instances],
+            self.steps[instances],
+        )
+
+
+ITEM, END, GUIDE, INSTANCE, DEMONSTRATION, CORRECTION, STEPS = range(7)
+"""Columns of the integer state of the lanes, (LANES, 7): the present item of work, instance times D
+plus rank in the order (-1: none left); where its run of items ends; the guiding pose ahead; ..."""
+
+
+@njit(error_model="numpy", _nrt=False)
+def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-def]
+    """Decides for every lane with an event, and starts plans in lanes that are free.
+
+    Args:
+        b: the block.
+        lanes: (LANES, 7) int64.
+        queue: (3,) int64: next unit of work, end of the units, items in a unit.
+        rows: Places.
+
+    Returns:
+        The number of lanes at work.
+    """
+    busy = 0
+    for i in range(LANES):
+        if lanes[i, ITEM] < 0:
+            b[at(NEXT_STEP, i)] = 1.0
+            continue
+        busy += 1
+        lanes[i, STEPS] += 1
+        if b[at(EVENT, i)] == 0.0:
+            continue
+        cause, joint, fraction = decide(b, i, lanes, rows, problem)
+        if cause < 0:
+            continue
+        plan = lanes[i, INSTANCE], lanes[i, DEMONSTRATION]
+        answers.cause[plan] = cause
+        done = cause == SUCCESS
+        answers.segment[plan] = (
+            -1 if done else lanes[i, GUIDE] - problem.first[lanes[i, DEMONSTRATION]]
+        )
+        answers.joint[plan] = joint
+        answers.fraction[plan] = fraction
+        answers.steps[plan] = lanes[i, STEPS]
+        lanes[i, ITEM] += 1
+        if cause == SUCCESS or lanes[i, ITEM] == lanes[i, END]:
+            next_unit(i, lanes, queue)
+        if lanes[i, ITEM] >= 0:
+            begin_plan(b, i, lanes, rows, problem)
+        else:
+            busy -= 1
+    return busy
+
+
+@njit(error_model="numpy", _nrt=False)
+def next_unit(i, lanes, queue):  # type: ignore[no-untyped-def]
+    """Gives a lane the next unit of work, if any is left."""
+    if queue[0] == queue[1]:
+        lanes[i, ITEM] = -1
+        return
+    lanes[i, ITEM] = queue[0] * queue[2]
+    lanes[i, END] = lanes[i, ITEM] + queue[2]
+    queue[0] += 1
+
+
+@njit(error_model="numpy", _nrt=False)
+def begin_plan(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
+    """Puts a lane at its start configuration, aiming at the first guiding pose."""
+    instance, rank = divmod(lanes[i, ITEM], problem.order.shape[1])
+    demonstration = problem.order[min(instance, problem.order.shape[0] - 1), rank]
+    lanes[i, INSTANCE] = instance
+    lanes[i, DEMONSTRATION] = demonstration
+    lanes[i, GUIDE] = problem.first[demonstration]
+    lanes[i, STEPS] = 0
+    load_start(b, i, rows, problem.start, min(instance, problem.start.shape[0] - 1))
+    b[at(ACCEPTED, i)] = 1.0
+    aim_at_guide(b, i, lanes, problem)
+
+
+@njit(error_model="numpy", _nrt=False)
+def load_start(b, i, rows, start, m):  # type: ignore[no-untyped-def]
+    """Puts a lane at the end of a step that ended in start configuration m."""
+    n = rows.q_stage - rows.q
+    row = start[m]
+    for j in range(n):
+        b[at(rows.q_stage + j, i)] = row[uintp(j)]
+    for k in range(12):
+        b[at(POSE + k, i)] = row[uintp(n + k)]
+    for k in range(rows.end - rows.kept):
+        b[at(rows.kept + k, i)] = row[uintp(n + 12 + k)]
+
+
+@njit(error_model="numpy", _nrt=False)
+def save_start(b, i, rows, start, m):  # type: ignore[no-untyped-def]
+    """The opposite of load_start."""
+    n = rows.q_stage - rows.q
+    for j in range(n):
+        start[m, j] = b[at(rows.q_stage + j, i)]
+    for k in range(12):
+        start[m, n + k] = b[at(POSE + k, i)]
+    for k in range(rows.end - rows.kept):
+        start[m, n + 12 + k] = b[at(rows.kept + k, i)]
+
+
+@njit(error_model="numpy", _nrt=False)
+def aim_at_guide(b, i, lanes, problem):  # type: ignore[no-untyped-def]
+    """Starts the segment to the guiding pose ahead: X_BG = X_BO X_OE."""
+    guide = lanes[i, GUIDE]
+    m, k = uintp(lanes[i, INSTANCE]), uintp(problem.objects[guide])
+    g = uintp(guide)
+    X_BO, X_OE = problem.X_BO, problem.X_OE
+    for r in range(3):
+        for c in range(4):
+            value = X_BO[m, k, r, 3] if c == 3 else 0.0
+            for a in range(3):
+                value += X_BO[m, k, r, a] * X_OE[g, a, c]
+            b[at(TARGET + 4 * r + c, i)] = value
+    lanes[i, CORRECTION] = 0
+    b[at(AIM, i)] = 1.0
+
+
+@njit(error_model="numpy", _nrt=False)
+def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
+    """What the event of a lane means.
+
+    Returns:
+        cause (-1: the plan goes on), joint, fraction of the segment.
+    """
+    progress, step = b[at(PROGRESS, i)], b[at(STEP, i)]
+    bound = problem.rate_max2 * b[at(HAND, i)]
+    if lanes[i, CORRECTION] > 0:
+        progress, step = 1.0, 0.0
+    if b[at(RATE_START, i)] > bound or b[at(ACCEPTED, i)] == 0.0:
+        return UNREACHABLE, -1, progress
+    if b[at(ROOM, i)] <= 0.0:
+        joint, u = first_crossing(b, i, rows, problem.limits)
+        if joint >= 0:
+            return JOINT_LIMIT, joint, progress + u * step
+    progress += step
+    if b[at(RATE_END, i)] > bound:
+        return UNREACHABLE, -1, progress
+    if progress < 1.0 - 1e-9:
+        return -1, -1, 0.0
+    if (
+        b[at(OFF_PLACE, i)] <= POSITION_TOLERANCE**2
+        and b[at(OFF_TURN, i)] <= 2.0 * ROTATION_TOLERANCE**2
+    ):
+        lanes[i, GUIDE] += 1
+        if lanes[i, GUIDE] == problem.first[lanes[i, DEMONSTRATION] + 1]:
+            return SUCCESS, -1, 1.0
+        aim_at_guide(b, i, lanes, problem)
+        return -1, -1, 0.0
+    lanes[i, CORRECTION] += 1
+    b[at(AIM, i)] = 1.0
+    if lanes[i, CORRECTION] > CORRECTIONS:
+        return UNREACHABLE, -1, 1.0
+    return -1, -1, 0.0

@@ -1,0 +1,108 @@
+"""What a scenario would do, told before it is done."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from drake_screw.acquisition import RecordedTeacher, random_suggestion
+from drake_screw.bandits.naive_pac import NaivePac, sample_size
+from drake_screw.scenario.assemble import Setup
+from drake_screw.scenario.schema import Scenario
+
+PROBE = 2_000
+
+
+def check(scenario: Scenario) -> str:
+    """Build everything a scenario names and describe the run it would make.
+
+    Returns:
+        A description for people, with the time a round is expected to take on this machine,
+        measured with one demonstration.
+
+    Raises:
+        DrakeScrewError: whatever would make the run fail on its input.
+    """
+    setup = Setup(scenario)
+    arm, regions, goal, strategy = (
+        setup.workcell.arm,
+        setup.regions,
+        setup.goal,
+        setup.strategy,
+    )
+    chain = arm.screw_chain()
+    lines = [
+        f"scenario   {scenario.name}: {scenario.description}".rstrip(": "),
+        f"robot      {setup.workcell.model_file.stem}, {arm.n} joints, hand '{arm.end_effector}', "
+        f"reach {chain.reach:.2f} m",
+        *_area_lines(setup),
+        f"regions    K = {regions.K}",
+        f"goal       every region succeeds at least {goal.beta:g} of the time, accuracy "
+        f"{goal.epsilon:g}, confidence {1 - goal.delta:g}",
+        f"strategy   {strategy.name}: {strategy.guarantee}",
+        _teacher_line(setup),
+        f"budget     {scenario.demonstrations.budget} demonstrations",
+    ]
+    corners = np.array(
+        [
+            [x, y, z]
+            for o in setup.area.objects
+            for x in (o.lower[0], o.upper[0])
+            for y in (o.lower[1], o.upper[1])
+            for z in (o.z,)
+        ]
+    )
+    away = np.linalg.norm(corners - chain.shoulder, axis=1).max()
+    if away > chain.reach:
+        lines.append(
+            f"note       the farthest corner of the work area is {away:.2f} m from the shoulder; "
+            "only an object held long reaches there"
+        )
+    rate = _plans_per_second(setup)
+    if rate is None:
+        lines.append("time       unknown: the teacher has no demonstration at a first random place")
+    elif isinstance(strategy, NaivePac):
+        n = sample_size(regions.K, goal.epsilon, goal.delta)
+        lines.append(f"samples    {n:,} in each region, {n * regions.K:,} a round, every round")
+        lines.append(f"time       about {n * regions.K / rate:,.0f} s a round or more here")
+    else:
+        lines.append("samples    as many as it takes, usually some thousands a round")
+        lines.append(f"time       {1e4 / rate:,.1f} s for 10,000 instances here")
+    return "\n".join(lines)
+
+
+def _area_lines(setup: Setup) -> list[str]:
+    lines = []
+    for o in setup.area.objects:
+        ranges = [
+            f"{axis} {lower:g}..{upper:g} {unit}" if lower < upper else f"{axis} {lower:g} {unit}"
+            for axis, lower, upper, unit in zip(
+                ("x", "y", "yaw"), o.lower, o.upper, ("m", "m", "rad"), strict=True
+            )
+        ]
+        lines.append(f"object     {o.name}: {', '.join(ranges)}, z {o.z:.4g} m")
+    return lines
+
+
+def _teacher_line(setup: Setup) -> str:
+    teacher = setup.teacher
+    if isinstance(teacher, RecordedTeacher):
+        return f"teacher    recorded: {len(teacher.recordings)} recordings"
+    return f"teacher    {setup.scenario.teacher.kind}: {setup.scenario.teacher.motion}"
+
+
+def _plans_per_second(setup: Setup) -> float | None:
+    """Measured with one demonstration on instances from all over the work area."""
+    rng = np.random.default_rng(setup.scenario.seed)
+    place = random_suggestion(setup.regions, rng)
+    lesson = setup.teacher.demonstrate(place, number=0, used=(), rng=rng)
+    if lesson.recording is None:
+        return None
+    demonstration = setup.learn(lesson.recording)
+    shape = (PROBE, *setup.area.lower.shape)
+    X_WO = setup.area.X_WO(rng.uniform(setup.area.lower, setup.area.upper, shape))
+    setup.planner.any_success([demonstration], X_WO[:1], setup.workcell.start)
+    began = time.perf_counter()
+    setup.planner.any_success([demonstration], X_WO, setup.workcell.start)
+    return PROBE / (time.perf_counter() - began)

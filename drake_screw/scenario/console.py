@@ -1,0 +1,148 @@
+"""A run as seen in a terminal: live progress, a table for each round, the certificate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.panel import Panel
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from drake_screw.acquisition import (
+    Event,
+    Finished,
+    RegionsEvaluated,
+    RoundFinished,
+    RoundStarted,
+    Status,
+)
+from drake_screw.bandits import Verdict
+from drake_screw.scenario.narration import describe
+from drake_screw.scenario.runner import Run, certificate
+from drake_screw.tasks import GridRegions
+
+_ROWS = 24
+
+
+def show(run: Run, console: Console, *, quiet: bool = False) -> Finished:
+    """Carry a run out, showing its events as they happen.
+
+    Args:
+        run: new or resumed.
+        console: to write to; a live display only where it is a terminal.
+        quiet: nothing but the certificate.
+
+    Returns:
+        The run's last event.
+    """
+    regions = run.setup.regions
+    live = _progress(console, hidden=quiet)
+    with live:
+        task = live.add_task("starting", total=None, detail="")
+
+        def progress(event: RegionsEvaluated) -> None:
+            rates = event.failures / np.maximum(event.samples, 1)
+            worst = int(np.argmax(rates))
+            detail = (
+                f"{event.samples.sum():>9,} instances, highest failure rate "
+                f"{rates[worst]:6.2%} in region {worst}"
+            )
+            live.update(task, detail=detail)
+
+        for event in run.events(progress):
+            if isinstance(event, RoundStarted):
+                live.update(task, description=describe(event, regions), detail="")
+            elif not quiet and not isinstance(event, Finished):
+                live.console.print(Text(describe(event, regions)))
+            if isinstance(event, RoundFinished) and not quiet:
+                live.console.print(round_table(event.verdict, regions))
+            finished = event
+        live.update(task, visible=False)
+    assert isinstance(finished, Finished)
+    show_certificate(run, finished, console)
+    return finished
+
+
+def tell(run: Run, events: Iterable[Event], console: Console) -> None:
+    """Show events that have happened before."""
+    for event in events:
+        if isinstance(event, Finished):
+            show_certificate(run, event, console)
+        elif not isinstance(event, RoundStarted):
+            console.print(Text(describe(event, run.setup.regions)))
+            if isinstance(event, RoundFinished):
+                console.print(round_table(event.verdict, run.setup.regions))
+
+
+def show_certificate(run: Run, finished: Finished, console: Console) -> None:
+    """The statement a finished run makes, and where to find the rest."""
+    stated = certificate(run.setup, finished)
+    certified = finished.status is Status.CERTIFIED
+    lines = [f"{finished.reason}."] if not certified else []
+    if "claim" in stated:
+        lines.append(f"{stated['claim']}.")
+        lines.append(
+            f"{stated['demonstrations']} demonstrations, {stated['regions']} regions, strategy "
+            f"{stated['strategy']}, {stated['fresh_instances']:,} fresh instances in the last round"
+        )
+        if not certified:
+            lines.append(f"coverage shown so far: {stated['coverage']:.4f} of every region")
+    console.print(
+        Panel(
+            Text("\n".join(lines)),
+            title="certificate" if certified else "no certificate",
+            border_style="green" if certified else "yellow",
+            title_align="left",
+        )
+    )
+    console.print(Text(f"run directory: {run.directory.path}"), soft_wrap=True)
+
+
+def round_table(verdict: Verdict, regions: GridRegions) -> Table:
+    """Regions of a round with their counts; with many regions, the worst of them."""
+    shown = np.arange(regions.K)
+    title = None
+    if regions.K > _ROWS:
+        shown = np.argsort(-np.nan_to_num(verdict.estimates), kind="stable")[:_ROWS]
+        title = f"the {_ROWS} regions that fail most, of {regions.K}"
+    table = Table(title=title, box=None, pad_edge=False, padding=(0, 1, 0, 0))
+    table.add_column("region", justify="right")
+    table.add_column("where", no_wrap=True)
+    for name in ("samples", "failures", "rate", "at most"):
+        table.add_column(name, justify="right")
+    table.add_column("")
+    for j in shown.tolist():
+        weakest = j == verdict.region
+        table.add_row(
+            str(j),
+            regions.name(j),
+            f"{verdict.samples[j]:,}",
+            f"{verdict.failures[j]:,}",
+            f"{verdict.estimates[j]:.4f}",
+            f"{verdict.upper[j]:.4f}",
+            _bar(verdict.estimates, j) + (" < weakest" if weakest else ""),
+            style="bold" if weakest else None,
+        )
+    return table
+
+
+def _bar(estimates: NDArray[np.float64], region: int) -> str:
+    share = float(np.nan_to_num(estimates[region]))
+    return "█" * int(np.ceil(8 * share)) if share > 0 else ""
+
+
+def _progress(console: Console, *, hidden: bool) -> Progress:
+    return Progress(
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=12),
+        TextColumn("{task.fields[detail]}"),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+        disable=hidden or not console.is_terminal,
+    )

@@ -1,0 +1,91 @@
+"""Tables of task instances in, tables of outcomes out."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+
+from drake_screw.errors import ScenarioError, nearest
+from drake_screw.planning import Outcomes
+from drake_screw.screws.rotations import Array
+from drake_screw.tasks import AXES, WorkArea
+
+
+def read_instances(file: Path, area: WorkArea) -> Array:
+    """Read task instances from a CSV with a header.
+
+    Columns are x, y (m) and, if wanted, yaw (rad) of the only object, or bowl.x and so on where
+    there are several; a yaw that has no column is the least of the work area. Other columns are
+    passed over.
+
+    Returns:
+        x_y_yaw: (N, k, 3).
+
+    Raises:
+        ScenarioError: with file and line, whatever is wrong.
+    """
+    try:
+        rows = list(csv.reader(io.StringIO(file.read_text(encoding="utf-8-sig"))))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(
+            f"cannot be read: {getattr(error, 'strerror', None) or error}",
+            remedy="Give a CSV file with the columns x and y.",
+            file=file,
+        ) from error
+    header = [name.strip() for name in rows[0]] if rows else []
+    x_y_yaw = np.tile(area.lower, (max(len(rows) - 1, 0), 1, 1))
+    columns: dict[int, tuple[int, int]] = {}
+    for i, item in enumerate(area.objects):
+        for j, axis in enumerate(AXES):
+            name = axis if len(area.objects) == 1 else f"{item.name}.{axis}"
+            if name in header:
+                columns[header.index(name)] = (i, j)
+            elif axis != "yaw":
+                guess = nearest(name, header)
+                raise ScenarioError(
+                    f"no column '{name}'",
+                    remedy=(f"Did you mean '{guess}'? " if guess else "")
+                    + f"Columns found: {', '.join(header) or 'none'}",
+                    file=file,
+                    line=1,
+                )
+    kept = []
+    for number, row in enumerate(rows[1:], start=2):
+        if not row:
+            continue
+        for column, (i, j) in columns.items():
+            try:
+                value = float(row[column])
+            except (ValueError, IndexError):
+                value = float("nan")
+            if not np.isfinite(value):
+                found = row[column] if column < len(row) else "nothing"
+                raise ScenarioError(
+                    f"{header[column]} is {found!r}, expected a number", file=file, line=number
+                )
+            x_y_yaw[number - 2, i, j] = value
+        kept.append(number - 2)
+    if not kept:
+        raise ScenarioError("no instances in this file", file=file)
+    return x_y_yaw[kept]
+
+
+def outcomes_csv(x_y_yaw: Array, outcomes: Outcomes, names: list[str], area: WorkArea) -> str:
+    """A row for each instance: where it is, then the outcome code of each demonstration.
+
+    Codes are ``Outcomes.codes``; yaw gets a column where it is not fixed by the work area.
+    """
+    header, cells = [], []
+    for i, item in enumerate(area.objects):
+        for j, axis in enumerate(AXES):
+            values = x_y_yaw[:, i, j]
+            if axis == "yaw" and np.all(values == values[0]):
+                continue
+            header.append(axis if len(area.objects) == 1 else f"{item.name}.{axis}")
+            cells.append([f"{v:.9g}" for v in values.tolist()])
+    cells += outcomes.codes().T.tolist()
+    lines = [",".join([*header, *names]), *(",".join(row) for row in zip(*cells, strict=True))]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,58 @@
+"""Events of a run in words, for logs and terminals."""
+
+from __future__ import annotations
+
+from drake_screw.acquisition import (
+    DemonstrationAdded,
+    DemonstrationRequested,
+    Event,
+    Finished,
+    RegionsEvaluated,
+    RoundFinished,
+    RoundStarted,
+    Suggestion,
+)
+from drake_screw.tasks import GridRegions
+
+
+def describe(event: Event, regions: GridRegions) -> str:
+    """One line on an event."""
+    match event:
+        case RoundStarted():
+            return f"round {event.round + 1}: evaluating {_count(len(event.demonstrations))}"
+        case RegionsEvaluated():
+            return f"round {event.round + 1}: {event.samples.sum():,} instances"
+        case RoundFinished():
+            verdict = event.verdict
+            weakest = verdict.estimates[verdict.region]
+            return (
+                f"round {event.round + 1}: {verdict.total_samples:,} instances; weakest region "
+                f"{verdict.region} ({regions.name(verdict.region)}) fails {weakest:.2%}; "
+                f"{verdict.reason}"
+            )
+        case DemonstrationRequested():
+            return f"demonstration {event.number + 1} wanted at {place(event.suggestion, regions)}"
+        case DemonstrationAdded():
+            notes = "".join(f"; {note}" for note in event.recording.notes)
+            return (
+                f"demonstration {event.number + 1} is {event.recording.name} "
+                f"({event.recording.duration:.1f} s, {len(event.demonstration.X_OE)} guiding "
+                f"poses): {event.remark}{notes}"
+            )
+        case Finished():
+            return f"{event.status.value}: {event.reason}"
+
+
+def place(suggestion: Suggestion, regions: GridRegions) -> str:
+    """Where a demonstration is wanted."""
+    objects = zip(regions.area.objects, suggestion.x_y_yaw, strict=True)
+    where = ", ".join(
+        f"{o.name} x {x:.3f} m, y {y:.3f} m" + (f", yaw {yaw:.2f} rad" if yaw else "")
+        for o, (x, y, yaw) in objects
+    )
+    failed = "" if suggestion.segment is None else f", segment {suggestion.segment + 1} fails"
+    return f"{where} (region {suggestion.region}{failed})"
+
+
+def _count(n: int) -> str:
+    return f"{n} demonstration{'' if n == 1 else 's'}"

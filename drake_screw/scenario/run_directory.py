@@ -1,0 +1,293 @@
+"""What a run leaves on disk, and how it is read again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+import shutil
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from datetime import datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+
+from drake_screw.acquisition import Evaluation, RoundFinished, Status, Suggestion
+from drake_screw.bandits import Verdict
+from drake_screw.demonstrations import Recording, write_recording
+from drake_screw.errors import RunDirectoryError
+from drake_screw.planning import Outcomes
+from drake_screw.tasks import GridRegions
+
+FORMAT = 1
+RUN, SCENARIO, LOG = "run.json", "scenario.yaml", "run.log"
+_ARRAYS = ("samples", "failures", "lower", "upper")
+
+
+class RunDirectory:
+    """One run's folder. Files appear whole or not at all: written aside, then renamed.
+
+    Attributes:
+        path: of the folder.
+        record: contents of run.json.
+    """
+
+    def __init__(self, path: Path, record: dict[str, Any]) -> None:
+        self.path = path
+        self.record = record
+
+    @classmethod
+    def create(
+        cls, path: Path | None, name: str, scenario_text: str, facts: Mapping[str, Any]
+    ) -> Self:
+        """Make a new run directory.
+
+        Args:
+            path: where; ``runs/<name>/<time>`` if None. It must not exist, or be empty.
+            name: of the scenario.
+            scenario_text: the resolved scenario.
+            facts: what else run.json records.
+
+        Raises:
+            RunDirectoryError: the place is taken or cannot be written.
+        """
+        path = path or _fresh(Path("runs") / name)
+        try:
+            if path.exists() and (not path.is_dir() or any(path.iterdir())):
+                raise RunDirectoryError(
+                    "exists already; a run never overwrites anything",
+                    remedy="Give another --output, or continue a run with --resume.",
+                    file=path,
+                )
+            path.mkdir(parents=True, exist_ok=True)
+            write_text(path / SCENARIO, scenario_text)
+        except OSError as error:
+            raise RunDirectoryError(
+                f"cannot be written: {error.strerror}",
+                remedy="Choose a folder you may write to with --output.",
+                file=path,
+            ) from error
+        record = {
+            "format": FORMAT,
+            "scenario": name,
+            "status": Status.RUNNING.value,
+            "reason": None,
+            **facts,
+            "versions": {
+                "python": platform.python_version(),
+                **{p: version(p) for p in ("drake-screw", "drake", "numpy", "scipy", "numba")},
+            },
+            "started": datetime.now().astimezone().isoformat(timespec="seconds"),
+            "finished": None,
+            "certificate": None,
+            "demonstrations": [],
+            "rounds": [],
+        }
+        directory = cls(path, record)
+        directory.save()
+        return directory
+
+    @classmethod
+    def open(cls, path: Path) -> Self:
+        """Open an existing run directory.
+
+        Raises:
+            RunDirectoryError: it is not one, is damaged, or is of another version.
+        """
+        file = path / RUN
+        if not file.is_file():
+            raise RunDirectoryError(
+                f"not a run directory: it has no {RUN}",
+                remedy="Give the folder that a run printed at its end.",
+                file=path,
+            )
+        try:
+            record = json.loads(file.read_text())
+            found = record["format"]
+            if not {"status", "rounds", "demonstrations", "seed"} <= record.keys():
+                raise KeyError("keys are missing")
+        except (ValueError, KeyError, TypeError) as error:
+            raise RunDirectoryError(
+                f"damaged: {error}", remedy="Restore it, or run the scenario again.", file=file
+            ) from error
+        if found != FORMAT:
+            raise RunDirectoryError(
+                f"written in format {found}; this version reads format {FORMAT}",
+                remedy=f"Use the version that wrote it ({record.get('versions', {})}).",
+                file=file,
+            )
+        return cls(path, record)
+
+    def save(self, **changes: Any) -> None:
+        """Change run.json."""
+        self.record.update(changes)
+        write_text(self.path / RUN, json.dumps(self.record, indent=2) + "\n")
+
+    def add_demonstration(
+        self, number: int, recording: Recording, remark: str, held: Mapping[str, float]
+    ) -> Path:
+        """Store a demonstration's recording; returns its folder."""
+        folder = self.path / "demonstrations" / f"{number + 1:02d}_{recording.name}"
+
+        def fill(temporary: Path) -> None:
+            if recording.source is not None:
+                shutil.copytree(recording.source, temporary, dirs_exist_ok=True)
+            else:
+                write_recording(recording, temporary, held)
+
+        write_folder(folder, fill)
+        entry = {
+            "name": recording.name,
+            "folder": str(folder.relative_to(self.path)),
+            "source": None if recording.source is None else str(recording.source),
+            "remark": remark,
+            "notes": list(recording.notes),
+        }
+        self.save(demonstrations=[*self.record["demonstrations"], entry])
+        return folder
+
+    def add_round(
+        self,
+        event: RoundFinished,
+        regions: GridRegions,
+        draw: Callable[[RoundFinished, Path], None],
+    ) -> None:
+        """Store a round: its table of regions, its instances, its pictures, the suggestion."""
+        verdict = event.verdict
+
+        def fill(folder: Path) -> None:
+            (folder / "regions.csv").write_text(_regions_csv(verdict, regions))
+            save_evaluation(folder / "instances.npz", event.evaluation)
+            if event.suggestion is not None:
+                text = json.dumps(_suggestion(event.suggestion, regions), indent=2)
+                (folder / "next_demonstration.json").write_text(text + "\n")
+            draw(event, folder / "heat_map")
+
+        write_folder(self.round_folder(event.round), fill)
+        self.save(rounds=[*self.record["rounds"], _round_record(event, regions)])
+
+    def round_folder(self, round: int) -> Path:
+        """Folder of a round; the first is round_01."""
+        return self.path / f"round_{round + 1:02d}"
+
+    def remembered_round(self, round: int) -> tuple[Evaluation, Verdict] | None:
+        """What a round found, if it is stored."""
+        if round >= len(self.record["rounds"]):
+            return None
+        entry, file = self.record["rounds"][round], self.round_folder(round) / "instances.npz"
+        try:
+            evaluation = load_evaluation(file)
+            fields = dict(entry["verdict"])
+            for name in _ARRAYS:
+                fields[name] = np.array(fields[name])
+            return evaluation, Verdict(**fields)
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise RunDirectoryError(
+                f"round {round + 1} is damaged: {error}",
+                remedy="Restore it, or run the scenario again.",
+                file=file,
+            ) from error
+
+
+def save_evaluation(file: Path, evaluation: Evaluation) -> None:
+    """Write the instances of a round and their outcomes as .npz."""
+    outcomes = evaluation.outcomes
+    np.savez_compressed(
+        file,
+        x_y_yaw=evaluation.x_y_yaw,
+        region=evaluation.region.astype(np.uint16),
+        cause=outcomes.cause,
+        segment=outcomes.segment,
+        joint=outcomes.joint,
+        fraction=outcomes.fraction,
+    )
+
+
+def load_evaluation(file: Path) -> Evaluation:
+    """Read what `save_evaluation` wrote."""
+    with np.load(file) as data:
+        outcomes = Outcomes(data["cause"], data["segment"], data["joint"], data["fraction"])
+        return Evaluation(data["x_y_yaw"], data["region"].astype(np.int64), outcomes)
+
+
+def write_text(file: Path, text: str) -> None:
+    """Write a file so that it is there whole or not at all."""
+    temporary = file.with_name(f".{file.name}.part")
+    temporary.write_text(text)
+    os.replace(temporary, file)
+
+
+def write_folder(folder: Path, fill: Callable[[Path], None]) -> None:
+    """Write a folder so that it is there whole or not at all; a stale one is replaced."""
+    temporary = folder.with_name(f".{folder.name}.part")
+    shutil.rmtree(temporary, ignore_errors=True)
+    temporary.mkdir(parents=True)
+    fill(temporary)
+    shutil.rmtree(folder, ignore_errors=True)
+    os.replace(temporary, folder)
+
+
+def file_hash(file: Path) -> str:
+    """SHA-256 of a file's contents."""
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def _fresh(parent: Path) -> Path:
+    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
+    path, count = parent / stamp, 1
+    while path.exists():
+        count += 1
+        path = parent / f"{stamp}_{count}"
+    return path
+
+
+def _round_record(event: RoundFinished, regions: GridRegions) -> dict[str, Any]:
+    verdict = event.verdict
+    fields = asdict(verdict)
+    for name in _ARRAYS:
+        fields[name] = fields[name].tolist()
+    return {
+        "round": event.round + 1,
+        "demonstrations": len(event.demonstrations),
+        "samples": verdict.samples.tolist(),
+        "failure_rates": verdict.estimates.tolist(),
+        "weakest_region": verdict.region,
+        "certified": verdict.certified,
+        "reason": verdict.reason,
+        "next_demonstration": None
+        if event.suggestion is None
+        else _suggestion(event.suggestion, regions),
+        "verdict": fields,
+    }
+
+
+def _suggestion(suggestion: Suggestion, regions: GridRegions) -> dict[str, Any]:
+    objects = zip(regions.area.objects, suggestion.x_y_yaw.tolist(), strict=True)
+    return {
+        "region": suggestion.region,
+        "region_name": regions.name(suggestion.region),
+        "objects": {o.name: {"x": x, "y": y, "yaw": yaw} for o, (x, y, yaw) in objects},
+        "failed_segment": None if suggestion.segment is None else suggestion.segment + 1,
+    }
+
+
+def _regions_csv(verdict: Verdict, regions: GridRegions) -> str:
+    axes = [f"{o.name}_{a}" for o in regions.area.objects for a in ("x", "y", "yaw")]
+    header = ["region", *(f"{a}_{end}" for a in axes for end in ("min", "max"))]
+    rows = [",".join([*header, "samples", "failures", "failure_rate", "lower", "upper"])]
+    for j in range(regions.K):
+        lower, upper = regions.bounds(j)
+        ends = np.stack([lower.ravel(), upper.ravel()], axis=1).ravel()
+        numbers = [verdict.estimates[j], verdict.lower[j], verdict.upper[j]]
+        rows.append(
+            ",".join(
+                [str(j), *(f"{e:.6g}" for e in ends)]
+                + [str(verdict.samples[j]), str(verdict.failures[j])]
+                + [f"{v:.6g}" for v in numbers]
+            )
+        )
+    return "\n".join(rows) + "\n"

@@ -1,0 +1,272 @@
+"""Running a scenario: the acquisition loop, with its run directory as memory and listener."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from drake_screw.acquisition import (
+    Evaluation,
+    Evaluator,
+    Event,
+    Finished,
+    Lesson,
+    RegionsEvaluated,
+    RoundFinished,
+    Status,
+    Suggestion,
+    acquire,
+)
+from drake_screw.bandits import Verdict
+from drake_screw.demonstrations import Demonstration, Recording, read_recording
+from drake_screw.errors import RunDirectoryError
+from drake_screw.scenario.assemble import Setup
+from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.scenario.narration import describe
+from drake_screw.scenario.pictures import draw_round, draw_run
+from drake_screw.scenario.run_directory import LOG, SCENARIO, RunDirectory, file_hash
+from drake_screw.scenario.schema import Scenario
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run that can be carried out, or carried on.
+
+    Attributes:
+        setup: what its scenario describes.
+        directory: where it is kept.
+    """
+
+    setup: Setup
+    directory: RunDirectory
+
+    def events(self, progress: Callable[[RegionsEvaluated], None] | None = None) -> Iterator[Event]:
+        """Carry the run out from where its directory leaves off, or from the start.
+
+        What the directory holds is not computed again but told again, as the same events.
+        Interrupting it leaves a directory that can be carried on.
+
+        Args:
+            progress: told of each batch of instances within a round.
+        """
+        self.directory.save(status=Status.RUNNING.value, reason=None)
+        try:
+            for event in self._acquire(progress):
+                self._record(event)
+                yield event
+        except BaseException as error:
+            interrupted = isinstance(error, KeyboardInterrupt | GeneratorExit)
+            reason = "interrupted" if interrupted else f"{type(error).__name__}: {error}"
+            self.directory.save(status=Status.INTERRUPTED.value, reason=reason)
+            self._log(reason)
+            raise
+
+    def replay(self) -> Iterator[Event]:
+        """Tell the stored events of a finished run again, and write nothing.
+
+        Raises:
+            RunDirectoryError: the run has not finished.
+        """
+        status = self.directory.record["status"]
+        if status not in (Status.CERTIFIED, Status.INSUFFICIENT):
+            raise RunDirectoryError(
+                f"this run has not finished; its status is '{status}'",
+                remedy=f"Finish it first: drake-screw run --resume {self.directory.path}",
+                file=self.directory.path,
+            )
+        yield from self._acquire(None)
+
+    def _acquire(self, progress: Callable[[RegionsEvaluated], None] | None) -> Iterator[Event]:
+        setup, scenario = self.setup, self.setup.scenario
+        evaluator = Evaluator(
+            setup.planner,
+            setup.regions,
+            setup.workcell.start,
+            setup.strategy,
+            scenario.seed,
+            progress,
+        )
+
+        def evaluate(
+            round: int, demonstrations: tuple[Demonstration, ...], attempt: int
+        ) -> tuple[Evaluation, Verdict]:
+            remembered = self.directory.remembered_round(round)
+            return remembered or evaluator.evaluate(round, demonstrations, attempt)
+
+        initial = setup.initial
+        if not isinstance(initial, int):
+            initial = tuple(
+                self._kept(i, recording, "given in the scenario")
+                for i, recording in enumerate(initial)
+            )
+        return acquire(
+            evaluate,
+            _KeptTeacher(self),
+            setup.learn,
+            setup.regions,
+            initial=initial,
+            budget=scenario.demonstrations.budget,
+            seed=scenario.seed,
+        )
+
+    def _kept(self, number: int, recording: Recording, remark: str) -> Recording:
+        """A recording as the run directory has it, where it is put first if it is new.
+
+        What is learned from is always what the files say, so that a resumed run cannot differ.
+        """
+        if number >= len(self.directory.record["demonstrations"]):
+            held = self.setup.scenario.robot.parked
+            self.directory.add_demonstration(number, recording, remark, held)
+        return self._stored(number)[0]
+
+    def _stored(self, number: int) -> tuple[Recording, str]:
+        """A recording of the run directory, and what was remarked on it."""
+        entry = self.directory.record["demonstrations"][number]
+        arm = self.setup.workcell.arm
+        stored = read_recording(
+            self.directory.path / entry["folder"],
+            arm.joint_names,
+            arm.lower,
+            arm.upper,
+            objects=len(self.setup.objects),
+        )
+        return replace(stored, name=entry["name"]), entry["remark"]
+
+    def _record(self, event: Event) -> None:
+        self._log(describe(event, self.setup.regions))
+        if isinstance(event, RoundFinished):
+            if event.round >= len(self.directory.record["rounds"]):
+                self.directory.add_round(event, self.setup.regions, draw_round(self.setup))
+        elif isinstance(event, Finished):
+            draw_run(self.setup, self._rounds(event), self.directory.path)
+            self.directory.save(
+                status=event.status.value,
+                reason=event.reason,
+                certificate=certificate(self.setup, event),
+                finished=datetime.now().astimezone().isoformat(timespec="seconds"),
+            )
+
+    def _rounds(self, finished: Finished) -> list[RoundFinished]:
+        """The run's rounds, told again from its directory."""
+        return [e for e in self._acquire(None) if isinstance(e, RoundFinished)]
+
+    def _log(self, text: str) -> None:
+        stamp = datetime.now().astimezone().isoformat(timespec="seconds")
+        with (self.directory.path / LOG).open("a") as log:
+            log.writelines(f"{stamp} {line}\n" for line in text.splitlines())
+
+
+@dataclass(frozen=True)
+class _KeptTeacher:
+    """Asks the scenario's teacher only what the run directory does not know yet."""
+
+    run: Run
+
+    def demonstrate(
+        self,
+        suggestion: Suggestion,
+        *,
+        number: int,
+        used: tuple[Recording, ...],
+        rng: np.random.Generator,
+    ) -> Lesson:
+        run = self.run
+        if number < len(run.directory.record["demonstrations"]):
+            return Lesson(*run._stored(number))
+        lesson = run.setup.teacher.demonstrate(suggestion, number=number, used=used, rng=rng)
+        if lesson.recording is None:
+            return lesson
+        return Lesson(run._kept(number, lesson.recording, lesson.remark), lesson.remark)
+
+
+def new_run(scenario: Scenario, output: Path | None = None) -> Run:
+    """Check a scenario to the bottom, then make its run directory.
+
+    Raises:
+        DrakeScrewError: anything it names cannot be used; nothing is written then.
+    """
+    setup = Setup(scenario)
+    model = setup.workcell.model_file
+    for part in (setup.strategy, setup.teacher, setup.initial):
+        assert part is not None
+    facts = {
+        "seed": scenario.seed,
+        "strategy": scenario.coverage.strategy,
+        "beta": scenario.coverage.beta,
+        "epsilon": scenario.coverage.epsilon,
+        "delta": scenario.coverage.delta,
+        "regions": setup.regions.K,
+        "model": str(model),
+        "hashes": {"model": file_hash(model)},
+    }
+    return Run(setup, RunDirectory.create(output, scenario.name, dump_scenario(scenario), facts))
+
+
+def open_run(path: Path) -> Run:
+    """Open a run directory.
+
+    Raises:
+        RunDirectoryError: it is not one, is damaged, or the robot model is not the same any more.
+    """
+    directory = RunDirectory.open(path)
+    setup = Setup(load_scenario(path / SCENARIO))
+    if file_hash(setup.workcell.model_file) != directory.record.get("hashes", {}).get("model"):
+        raise RunDirectoryError(
+            f"the robot model {setup.workcell.model_file} has changed since this run",
+            remedy="Put the model back as it was, or run the scenario again.",
+            file=path,
+        )
+    return Run(setup, directory)
+
+
+def resumable(run: Run) -> Run:
+    """The run itself, if there is something left of it to do.
+
+    Raises:
+        RunDirectoryError: it has ended.
+    """
+    status = run.directory.record["status"]
+    if status in (Status.CERTIFIED, Status.INSUFFICIENT):
+        raise RunDirectoryError(
+            f"this run has ended ({status}); there is nothing to resume",
+            remedy=f"See it with: drake-screw report {run.directory.path}",
+            file=run.directory.path,
+        )
+    return run
+
+
+def redraw(run: Run) -> list[RoundFinished]:
+    """Draw all pictures of a finished run again; returns its rounds."""
+    rounds = [e for e in run.replay() if isinstance(e, RoundFinished)]
+    for event in rounds:
+        draw_round(run.setup)(event, run.directory.round_folder(event.round) / "heat_map")
+    draw_run(run.setup, rounds, run.directory.path)
+    return rounds
+
+
+def certificate(setup: Setup, finished: Finished) -> dict[str, Any]:
+    """What a finished run states, in plain data."""
+    verdict = finished.verdict
+    block = setup.scenario.coverage
+    stated: dict[str, Any] = {
+        "certified": finished.status is Status.CERTIFIED,
+        "regions": setup.regions.K,
+        "strategy": block.strategy,
+        "guarantee": setup.strategy.guarantee,
+        "beta": block.beta,
+        "epsilon": block.epsilon,
+        "delta": block.delta,
+        "demonstrations": len(finished.demonstrations),
+    }
+    if verdict is not None:
+        stated |= {
+            "claim": verdict.claim,
+            "coverage": block.beta if verdict.certified else verdict.coverage,
+            "fresh_instances": verdict.total_samples,
+        }
+    return stated

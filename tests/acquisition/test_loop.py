@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from drake_screw.acquisition import (
+    DemonstrationAdded,
+    DemonstrationRequested,
+    Finished,
+    RoundFinished,
+    RoundStarted,
+    Status,
+    acquire,
+)
+from drake_screw.bandits import Goal, make_strategy
+
+from .conftest import Disks, Obliging, learn, recording_at
+
+
+def run(disks, teacher, **options):
+    options = {"initial": 1, "budget": 20, "seed": 0} | options
+    return list(acquire(disks.evaluate, teacher, learn, disks.regions, **options))
+
+
+def test_asks_until_every_region_is_covered(disks):
+    events = run(disks, Obliging())
+    end = events[-1]
+    assert isinstance(end, Finished)
+    assert end.status is Status.CERTIFIED
+    assert end.verdict.estimates.max() <= 1 - 0.2 - 0.7
+    rounds = [e for e in events if isinstance(e, RoundFinished)]
+    assert len(rounds) > 1
+    assert all(not r.verdict.certified for r in rounds[:-1])
+    assert [len(r.demonstrations) for r in rounds] == list(range(1, len(rounds) + 1))
+
+
+def test_the_order_of_events(disks):
+    kinds = [type(e) for e in run(disks, Obliging())]
+    assert kinds[:3] == [DemonstrationRequested, DemonstrationAdded, RoundStarted]
+    body, end = kinds[2:-1], kinds[-1]
+    cycle = [RoundStarted, RoundFinished, DemonstrationRequested, DemonstrationAdded]
+    assert body == (cycle * len(body))[: len(body)]
+    assert body[-1] is RoundFinished
+    assert end is Finished
+
+
+def test_suggestions_fail_lie_in_the_weakest_region_and_failed_earliest(disks):
+    for event in run(disks, Obliging()):
+        if not isinstance(event, RoundFinished) or event.suggestion is None:
+            continue
+        place = event.suggestion.x_y_yaw
+        assert event.suggestion.region == event.verdict.region
+        assert disks.regions.index(place) == event.verdict.region
+        assert not disks.solves(place[None], event.demonstrations).any()
+        seen, region = event.evaluation, event.verdict.region
+        mine = seen.failed & (seen.region == region)
+        assert event.suggestion.segment == seen.outcomes[mine].furthest_segment.min()
+
+
+def test_a_budget_ends_the_run_with_what_was_shown():
+    disks = Disks(radius=0.2)
+    end = run(disks, Obliging(), budget=3)[-1]
+    assert end.status is Status.INSUFFICIENT
+    assert len(end.demonstrations) == 3
+    assert "budget of 3" in end.reason
+    assert end.verdict.coverage == max(0.0, 1 - 0.2 - end.verdict.estimates.max())
+
+
+def test_a_teacher_without_an_answer_ends_the_run():
+    disks, teacher = Disks(radius=0.2), Obliging(most=2)
+    end = run(disks, teacher)[-1]
+    assert end.status is Status.INSUFFICIENT
+    assert end.reason == "no more"
+    refused = teacher.asked[2:]
+    assert len(refused) == 3, "other failed instances are tried before giving up"
+    assert len({tuple(s.x_y_yaw[0]) for s in refused}) == 3
+
+
+def test_a_teacher_who_cannot_begin_ends_the_run_before_any_round(disks):
+    events = run(disks, Obliging(most=0))
+    assert not any(isinstance(e, RoundStarted) for e in events)
+    assert events[-1].status is Status.INSUFFICIENT
+    assert events[-1].verdict is None
+
+
+def test_initial_recordings_can_be_given(disks):
+    given = [recording_at("a", 0.2, 0.2), recording_at("b", 0.8, 0.8)]
+    events = run(disks, Obliging(), initial=given)
+    assert isinstance(events[0], RoundStarted)
+    assert [d.name for d in events[0].demonstrations] == ["a", "b"]
+
+
+def test_a_run_can_begin_with_nothing(disks):
+    first = next(e for e in run(disks, Obliging(), initial=0) if isinstance(e, RoundFinished))
+    assert (first.verdict.estimates == 1.0).all()
+    assert first.suggestion.segment is None
+
+
+def trace(events):
+    return [
+        (
+            r.verdict.failures.tolist(),
+            None if r.suggestion is None else r.suggestion.x_y_yaw.tolist(),
+        )
+        for r in events
+        if isinstance(r, RoundFinished)
+    ]
+
+
+def test_a_run_is_a_function_of_its_seed(disks):
+    again = Disks(radius=0.45)
+    assert trace(run(disks, Obliging())) == trace(run(again, Obliging()))
+    other = Disks(radius=0.45, seed=1)
+    assert trace(run(other, Obliging(), seed=1)) != trace(run(again, Obliging()))
+
+
+def test_every_round_has_fresh_instances(disks):
+    rounds = [e.evaluation.x_y_yaw for e in run(disks, Obliging()) if isinstance(e, RoundFinished)]
+    assert len(rounds) >= 2
+    assert not np.intersect1d(rounds[0].ravel(), rounds[1][..., :2].ravel()).size > 1
+
+
+def test_attempts_count_the_rounds_that_could_have_passed():
+    disks = Disks(radius=0.2)
+    disks.strategy = make_strategy("eprocess", Goal(0.7, 0.2, 0.1))
+    events = run(disks, Obliging(), budget=4)
+    rounds = [e for e in events if isinstance(e, RoundFinished)]
+    expected = 1 + np.cumsum([0] + [r.verdict.attempted for r in rounds])
+    assert [attempt for _, attempt in disks.log] == expected[: len(rounds)].tolist()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_teachers_get_random_numbers_of_their_own(seed):
+    draws = []
+
+    class Drawing(Obliging):
+        def demonstrate(self, suggestion, *, number, used, rng):
+            draws.append(rng.random())
+            return super().demonstrate(suggestion, number=number, used=used, rng=rng)
+
+    run(Disks(radius=0.3), Drawing(), seed=seed, budget=5)
+    assert len(set(draws)) == len(draws)

@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from drake_screw.acquisition import RecordedTeacher, Suggestion
+
+from .conftest import Disks, recording_at
+
+LIBRARY = (
+    recording_at("near", 0.6, 0.2),
+    recording_at("far", 0.9, 0.1),
+    recording_at("elsewhere", 0.45, 0.2),
+)
+
+
+@pytest.fixture
+def teacher():
+    return RecordedTeacher(LIBRARY, Disks(radius=1.0).regions)
+
+
+def ask(teacher, x, y, used=()):
+    place = np.array([[x, y, 0.0]])
+    suggestion = Suggestion(int(teacher.regions.index(place)), place)
+    return teacher.demonstrate(
+        suggestion, number=len(used), used=used, rng=np.random.default_rng(0)
+    )
+
+
+def test_the_nearest_of_the_region_comes_first_even_if_another_region_has_a_nearer_one(teacher):
+    lesson = ask(teacher, 0.51, 0.2)
+    assert lesson.recording.name == "near"
+    assert "nearest unused recording of region 1" in lesson.remark
+    assert "9 cm" in lesson.remark
+
+
+def test_used_recordings_are_not_given_again(teacher):
+    assert ask(teacher, 0.51, 0.2, used=(LIBRARY[0],)).recording.name == "far"
+
+
+def test_another_region_helps_out_and_it_says_so(teacher):
+    lesson = ask(teacher, 0.51, 0.2, used=LIBRARY[:2])
+    assert lesson.recording.name == "elsewhere"
+    assert "no unused recording" in lesson.remark
+
+
+def test_it_says_when_it_has_none_left(teacher):
+    lesson = ask(teacher, 0.5, 0.2, used=LIBRARY)
+    assert lesson.recording is None
+    assert lesson.remark == "all 3 recordings are used"
