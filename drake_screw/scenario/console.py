@@ -40,6 +40,10 @@ def show(run: Run, console: Console, *, quiet: bool = False) -> Finished:
         The run's last event.
     """
     regions = run.setup.regions
+    if not (quiet or run.setup.planner.compiled):
+        console.print(
+            "compiling the planner for this arm; this happens once and takes some 20 seconds"
+        )
     live = _progress(console, hidden=quiet)
     with live:
         task = live.add_task("starting", total=None, detail="")
