@@ -28,15 +28,7 @@ def read_csv(file: Path, joint_names: Sequence[str]) -> tuple[Array, Array, Arra
         RecordingError: the file is missing or empty, lacks a column, or has a row that is not
             numbers.
     """
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except FileNotFoundError as error:
-        raise RecordingError(
-            "no such file", file=file, remedy="A recording is a folder with this file in it."
-        ) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise RecordingError(f"cannot be read: {error}", file=file) from error
-    lines = text.splitlines()
+    lines = read_lines(file, "A recording is a folder with this file in it.")
     header = [name.strip() for name in lines[0].split(",")] if lines else []
     wanted = ["time", *joint_names]
     for name in wanted:
@@ -71,6 +63,20 @@ def read_csv(file: Path, joint_names: Sequence[str]) -> tuple[Array, Array, Arra
         where.append(number)
     table = np.array(rows, dtype=float).reshape(len(rows), len(wanted))
     return table[:, 0], table[:, 1:], np.array(where, dtype=int)
+
+
+def read_lines(file: Path, remedy: str) -> list[str]:
+    """The lines of a text file.
+
+    Raises:
+        RecordingError: the file is missing, for which there is a remedy, or is not text.
+    """
+    try:
+        return file.read_text(encoding="utf-8-sig").splitlines()
+    except FileNotFoundError as error:
+        raise RecordingError("no such file", file=file, remedy=remedy) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise RecordingError(f"cannot be read: {error}", file=file) from error
 
 
 def csv_text(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from drake_screw.demonstrations.baxter_csv import csv_text, read_csv
+from drake_screw.demonstrations.baxter_csv import csv_text, read_csv, read_lines
 from drake_screw.demonstrations.recording import Recording, checked
 from drake_screw.errors import RecordingError
 from drake_screw.screws import normalized
@@ -114,22 +114,21 @@ def read_object_poses(file: Path) -> Array:
     Raises:
         RecordingError: the file is missing or is not a stack of poses.
     """
-    if not file.is_file():
-        raise RecordingError(
-            "no such file",
-            file=file,
-            remedy="Write the pose X_WO of each object, a 4x4 matrix, comma-separated.",
-        )
+    remedy = "Write the pose X_WO of each object, a 4x4 matrix, comma-separated."
+    lines = read_lines(file, remedy)
     rows: list[list[float]] = []
-    for number, line in enumerate(file.read_text(encoding="utf-8-sig").splitlines(), start=1):
+    for number, line in enumerate(lines, start=1):
         if not line.strip():
             continue
         try:
             row = [float(cell) for cell in line.split(",")]
         except ValueError as error:
             raise RecordingError("not numbers", file=file, line=number) from error
-        wrong_end = len(rows) % 4 == 3 and not np.allclose(row, [0, 0, 0, 1], atol=1e-6)
-        if len(row) != 4 or not np.isfinite(row).all() or wrong_end:
+        complete = len(row) == 4 and bool(np.isfinite(row).all())
+        wrong_end = (
+            len(rows) % 4 == 3 and complete and not np.allclose(row, [0, 0, 0, 1], atol=1e-6)
+        )
+        if not complete or wrong_end:
             raise RecordingError(
                 "not a row of a pose"
                 + ("; every fourth row must be 0,0,0,1" if wrong_end else ": expected 4 numbers"),

@@ -112,16 +112,16 @@ def checked(
             f"{t[row + 1] - t[row]:.2f} s are missing, in which the arm moved",
             "Record again: what the hand did in the gap cannot be known.",
         )
-    moved = np.abs(q - q[0]).max(axis=1) > STILL, np.abs(q - q[-1]).max(axis=1) > STILL
-    if not moved[0].any():
+    left, stays = np.abs(q - q[0]).max(axis=1) > STILL, np.abs(q - q[-1]).max(axis=1) <= STILL
+    first = int(np.argmax(left)) - 1
+    last = len(t) - int(np.argmin(stays[::-1]))
+    if not left.any() or stays.all() or first >= last:
         raise RecordingError(
-            f"the arm does not move: no joint by more than {STILL * 1e3:.0f} mrad",
+            f"the arm does not move: no joint by much more than {STILL * 1e3:.0f} mrad",
             remedy="Record again while leading the arm.",
             file=file,
         )
     ends = q[0].copy(), q[-1].copy()
-    first = int(np.argmax(moved[0])) - 1
-    last = len(t) - int(np.argmax(moved[1][::-1]))
     if t[first] - t[0] > 0.05 or t[-1] - t[last] > 0.05:
         notes.append(
             f"cut off {t[first] - t[0]:.2f} s of standing still at the start, "

@@ -6,17 +6,22 @@ longer fits it, and only what happens near an object is kept.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from drake_screw.screws import (
+    inverse,
     nearest_on_screw,
-    quaternion_distance,
-    sclerp,
+    quaternion_from_rotation,
+    rotation_vector_from_quaternion,
+    sclerp_position,
     translation_distance,
 )
 from drake_screw.screws.rotations import Array
+
+_TOGETHER = 24  # end poses judged at a time
 
 
 @dataclass(frozen=True)
@@ -40,32 +45,54 @@ class SegmentationConfig:
 
 def thin(X_WE: Array, spacing: float) -> Array:
     """Indices of poses of a path (m, 4, 4), each at least `spacing` m from the one kept before."""
-    positions = X_WE[:, :3, 3]
+    positions = X_WE[:, :3, 3].tolist()
     kept = [0]
-    while True:
-        away = np.linalg.norm(positions[kept[-1] + 1 :] - positions[kept[-1]], axis=1) >= spacing
-        if not away.any():
-            return np.array(kept)
-        kept.append(kept[-1] + 1 + int(np.argmax(away)))
+    for i, position in enumerate(positions):
+        if math.dist(position, positions[kept[-1]]) >= spacing and i > 0:
+            kept.append(i)
+    return np.array(kept)
 
 
-def fits_screw(X_WE: Array, config: SegmentationConfig) -> bool:
-    """Whether one constant screw from the first to the last pose of (m, 4, 4) fits all between.
+def fits_screw(X_WE: Array, ends: Array, config: SegmentationConfig) -> Array:
+    """Whether the constant screw from the first pose to an end pose fits all poses between.
 
     Where the path lingers on the screw (its parameter changes by less than `min_progress` from one
     pose to the next, the last one included), it does not; where it goes back a little, it may.
+
+    Args:
+        X_WE: (m, 4, 4) a path.
+        ends: (b,) indices into it, from 1: each is judged as the end pose.
+        config: the tolerances.
+
+    Returns:
+        (b,) bool.
     """
-    if len(X_WE) < 3:
-        return True
-    between = X_WE[1:-1]
-    s = nearest_on_screw(X_WE[0], X_WE[-1], between[:, :3, 3])
-    if (np.abs(np.diff(s, append=1.0)) < config.min_progress).any():
-        return False
-    on_screw = sclerp(X_WE[0], X_WE[-1], s)
-    return bool(
-        (translation_distance(on_screw, between) <= config.position_tolerance).all()
-        and (quaternion_distance(on_screw, between) <= config.rotation_tolerance).all()
+    last = int(np.max(ends))
+    X_WA, X_WB, p_WE = X_WE[0], X_WE[ends, None], X_WE[1:last, :3, 3]
+    s = nearest_on_screw(X_WA, X_WB, p_WE)
+    before_end = np.arange(1, last) < ends[:, None]
+    progress = np.diff(np.where(before_end, s, 1.0), append=1.0)
+    away = np.linalg.norm(sclerp_position(X_WA, X_WB, s) - p_WE, axis=-1)
+    fits = (
+        (np.abs(progress) >= config.min_progress)
+        & (away <= config.position_tolerance)
+        & (_rotation_distance(X_WE[:, :3, :3], ends, s) <= config.rotation_tolerance)
     )
+    return np.all(fits | ~before_end, axis=1)
+
+
+def _rotation_distance(R_WE: Array, ends: Array, s: Array) -> Array:
+    """Distance (b, last - 1) of unit quaternions of the path's poses 1 to last - 1 from a screw.
+
+    The screw leads from pose 0 to each of `ends`; the poses are held against it at s.
+    """
+    q = quaternion_from_rotation(R_WE[: int(np.max(ends)) + 1] @ R_WE[0].T)
+    w = rotation_vector_from_quaternion(q[ends])
+    angle = np.linalg.norm(w, axis=-1, keepdims=True)
+    axis = w / np.where(angle > 0.0, angle, 1.0)
+    between, half = q[1:-1], s * angle / 2.0
+    dot = np.cos(half) * between[:, 0] + np.sin(half) * (axis @ between[:, 1:].T)
+    return np.sqrt(2.0 * np.maximum(1.0 - np.abs(dot), 0.0))
 
 
 def segment(X_WE: Array, config: SegmentationConfig) -> Array:
@@ -76,9 +103,12 @@ def segment(X_WE: Array, config: SegmentationConfig) -> Array:
     """
     cuts, end = [0], 1
     while end < len(X_WE):
-        if not fits_screw(X_WE[cuts[-1] : end + 1], config):
-            cuts.append(end)
-        end += 1
+        ends = np.arange(end, min(end + _TOGETHER, len(X_WE)))
+        fits = fits_screw(X_WE[cuts[-1] :], ends - cuts[-1], config)
+        end = int(ends[-1]) + 1
+        if not fits.all():
+            cuts.append(int(ends[np.argmin(fits)]))
+            end = cuts[-1] + 1
     if cuts[-1] != len(X_WE) - 1:
         cuts.append(len(X_WE) - 1)
     return np.array(cuts)
@@ -104,11 +134,13 @@ def guiding_poses(
     kept = kept[segment(X_WE[kept], config)]
     ends = X_WE[kept]
     distance = translation_distance(ends[:, None], X_WO[None])
-    nearness = distance / distance.min(axis=0)
-    inside = np.stack([_first_run(d <= config.region_of_interest) for d in nearness.T], axis=1)
+    smallest = distance.min(axis=0)
+    near = distance <= config.region_of_interest * smallest
+    inside = np.stack([_first_run(flags) for flags in near.T], axis=1)
+    nearness = distance / np.maximum(smallest, 1e-9)
     chosen = np.flatnonzero(inside.any(axis=1))
     owner = np.argmin(np.where(inside, nearness, np.inf)[chosen], axis=1)
-    X_OE = np.linalg.inv(X_WO[owner]) @ ends[chosen]
+    X_OE = inverse(X_WO[owner]) @ ends[chosen]
     return X_OE, owner, kept[chosen]
 
 

@@ -25,8 +25,8 @@ class Arm:
 
     Raises:
         ModelError: a name the plant does not have (the message lists those it has), a joint that
-            is neither revolute nor prismatic, one without finite limits, or one that does not
-            move E.
+            is neither revolute nor prismatic, joints out of order, one without finite limits, or
+            one that does not move E.
     """
 
     def __init__(
@@ -50,6 +50,12 @@ class Arm:
                     f"joint '{joint.name()}' is {joint.type_name()}",
                     remedy="An arm is made of revolute and prismatic joints.",
                 )
+        carried = [len(plant.GetBodiesKinematicallyAffectedBy([j.index()])) for j in joints]
+        for i in np.flatnonzero(np.diff(carried) >= 0):
+            raise ModelError(
+                f"joint '{self.joint_names[i + 1]}' does not come after '{self.joint_names[i]}'",
+                remedy="List the joints from the base to the end effector, each once.",
+            )
         for name, value in (parked or {}).items():
             joint = _joint(plant, name)
             if joint.num_positions() != 1:

@@ -35,27 +35,35 @@ class ScrewChain:
         return len(self.joint_names)
 
     @property
-    def reach(self) -> float:
-        """An upper bound in m on the hand's distance from the first joint's axis line.
+    def shoulder(self) -> Array:
+        """(3,) m, a point that never moves: on the first revolute axis, nearest the home hand."""
+        return self._waypoints()[0]
 
-        It adds up the common normals from each axis to the next and the way to the hand, with the
-        offsets along the axes; prismatic joints add their travel.
+    @property
+    def reach(self) -> float:
+        """An upper bound in m on the hand's distance from the shoulder.
+
+        From each revolute axis to the next, then to the hand, it adds up lengths that no joint
+        can change; prismatic joints add their travel.
         """
-        points = [np.cross(S[:3], S[3:]) for S in self.screws if S[:3] @ S[:3] > 0.5]
-        axes = [S[:3] for S in self.screws if S[:3] @ S[:3] > 0.5]
-        travel = sum(
-            max(abs(lo), abs(hi))
-            for S, lo, hi in zip(self.screws, self.lower, self.upper, strict=True)
-            if S[:3] @ S[:3] < 0.5
-        )
-        if not points:
-            return float("inf")
-        place, total = _nearest_on_line(points[0], axes[0], self.home[:3, 3]), float(travel)
-        for point, axis in zip(points[1:], axes[1:], strict=True):
-            following = _nearest_on_line(point, axis, place)
-            total += float(np.linalg.norm(following - place))
-            place = following
-        return total + float(np.linalg.norm(self.home[:3, 3] - place))
+        points = self._waypoints()
+        lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        travel = np.maximum(np.abs(self.lower), np.abs(self.upper))[~self._revolute]
+        return float(lengths.sum() + travel.sum())
+
+    @property
+    def _revolute(self) -> Array:
+        return np.linalg.norm(self.screws[:, :3], axis=1) > 0.5
+
+    def _waypoints(self) -> Array:
+        """A point on each revolute axis, each the nearest to the one before, then the hand."""
+        hand = self.home[:3, 3]
+        places: list[Array] = []
+        for S in self.screws[self._revolute]:
+            axis, point = S[:3], np.cross(S[:3], S[3:])
+            near = places[-1] if places else hand
+            places.append(point + axis * ((near - point) @ axis))
+        return np.array([*places, hand]) if places else np.array([hand, hand])
 
     def pose(self, q: ArrayLike) -> Array:
         """Forward kinematics; q (..., n) rad or m to X_WE (..., 4, 4)."""
@@ -74,7 +82,3 @@ class ScrewChain:
             J[..., i] = adjoint(X) @ self.screws[i]
             X = X @ exp(self.screws[i] * q[..., i, None])
         return J
-
-
-def _nearest_on_line(point: Array, axis: Array, to: Array) -> Array:
-    return point + axis * ((to - point) @ axis)

@@ -12,6 +12,7 @@ from drake_screw.screws.interpolation import (
     Screw,
     nearest_on_screw,
     sclerp,
+    sclerp_position,
     screw_between,
     screw_from_twist,
 )
@@ -62,6 +63,7 @@ __all__ = [
     "rotation_from_quaternion",
     "rotation_vector_from_quaternion",
     "sclerp",
+    "sclerp_position",
     "screw_between",
     "screw_from_twist",
     "skew",

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.screws.poses import exp, inverse, log
-from drake_screw.screws.rotations import Array
+from drake_screw.screws.rotations import Array, cross
 
 
 @dataclass(frozen=True)
@@ -36,14 +36,14 @@ class Screw:
     @property
     def moment(self) -> Array:
         """(..., 3) m, the axis line's Plücker moment, point x axis."""
-        return np.cross(self.point, self.axis)
+        return cross(self.point, self.axis)
 
     @property
     def twist(self) -> Array:
         """(..., 6) the spatial twist [w; v] that makes this displacement in unit time."""
         w = self.angle[..., None] * self.axis
         return np.concatenate(
-            [w, np.cross(self.point, w) + self.translation[..., None] * self.axis], axis=-1
+            [w, cross(self.point, w) + self.translation[..., None] * self.axis], axis=-1
         )
 
 
@@ -64,7 +64,7 @@ def screw_from_twist(V: ArrayLike) -> Screw:
     x_axis = np.array([1.0, 0.0, 0.0])
     axis = np.where(size > 0.0, direction / np.where(size > 0.0, size, 1.0), x_axis)
     square = np.where(turns, angle, 1.0)[..., None] ** 2
-    point = np.where(turns[..., None], np.cross(w, v) / square, 0.0)
+    point = np.where(turns[..., None], cross(w, v) / square, 0.0)
     return Screw(axis, point, np.where(turns, angle, 0.0), np.sum(axis * v, axis=-1))
 
 
@@ -90,6 +90,19 @@ def sclerp(X_WA: ArrayLike, X_WB: ArrayLike, s: ArrayLike) -> Array:
     return exp(np.asarray(s, dtype=float)[..., None] * V) @ np.asarray(X_WA)
 
 
+def sclerp_position(X_WA: ArrayLike, X_WB: ArrayLike, s: ArrayLike) -> Array:
+    """Position of `sclerp`, in closed form, where its orientation is not needed.
+
+    Args:
+        X_WA, X_WB: (..., 4, 4).
+        s: (...), broadcast against the poses' leading axes.
+
+    Returns:
+        p_WE(s): (..., 3) m.
+    """
+    return np.asarray(X_WA)[..., :3, 3] + _OriginMotion.between(X_WA, X_WB).displacement(s)
+
+
 def nearest_on_screw(X_WA: ArrayLike, X_WB: ArrayLike, p_WQ: ArrayLike) -> Array:
     """Where on the constant screw from A to B the moving origin comes nearest to a point.
 
@@ -97,38 +110,79 @@ def nearest_on_screw(X_WA: ArrayLike, X_WB: ArrayLike, p_WQ: ArrayLike) -> Array
     Newton's method, within [0, 1].
 
     Args:
-        X_WA, X_WB: (4, 4).
-        p_WQ: (..., 3) m.
+        X_WA, X_WB: (..., 4, 4).
+        p_WQ: (..., 3) m, broadcast against the poses' leading axes.
 
     Returns:
         s: (...) in [0, 1].
     """
-    X_WA, Q = np.asarray(X_WA, dtype=float), np.asarray(p_WQ, dtype=float)
-    screw = screw_between(X_WA, X_WB)
-    l, theta, d = screw.axis, float(screw.angle), float(screw.translation)
-
-    def cylindrical(p: Array) -> tuple[Array, Array, Array]:
-        """Along the axis; across it; and across it turned by a right angle."""
-        offset = p - screw.point
-        along = offset @ l
-        return along, offset - along[..., None] * l, np.cross(l, offset)
-
-    z0, r0, t0 = cylindrical(X_WA[:3, 3])
-    z, r, _ = cylindrical(Q)
-    # squared distance = const - 2 (a cos(theta s) + b sin(theta s)) + (d s - h)^2
-    a, b, h = r @ r0, r @ t0, z - z0
-
-    def value(s: Array) -> Array:
-        turned = a[..., None] * np.cos(theta * s) + b[..., None] * np.sin(theta * s)
-        return (d * s - h[..., None]) ** 2 - 2.0 * turned
-
+    p_AQ = np.asarray(p_WQ, dtype=float) - np.asarray(X_WA)[..., :3, 3]
+    motion = _OriginMotion.between(X_WA, X_WB)
     grid = np.linspace(0.0, 1.0, 65)
-    s = grid[np.argmin(value(grid), axis=-1)]
+    track = motion.stretched().displacement(grid)
+    half_square = 0.5 * np.sum(track * track, axis=-1) - np.einsum("...i,...ki", p_AQ, track)
+    s = grid[np.argmin(half_square, axis=-1)]
     low, high = np.maximum(s - grid[1], 0.0), np.minimum(s + grid[1], 1.0)
+
+    theta, d = motion.angle, motion.along
+    forward = d * np.sum(motion.axis * p_AQ, axis=-1)
+    across = np.sum(motion.across * p_AQ, axis=-1)
+    inward = np.sum(motion.across**2, axis=-1) - theta * np.sum(motion.inward * p_AQ, axis=-1)
     for _ in range(8):
-        c, q = np.cos(theta * s), np.sin(theta * s)
-        slope = 2.0 * d * (d * s - h) + 2.0 * theta * (a * q - b * c)
-        bend = 2.0 * d * d + 2.0 * theta**2 * (a * c + b * q)
+        c, sine = np.cos(theta * s), s * np.sinc(theta * s / np.pi)
+        slope = d * d * s - forward + inward * sine - across * c
+        bend = d * d + inward * c + theta**2 * across * sine
         step = np.where(bend > 0.0, slope / np.where(bend > 0.0, bend, 1.0), 0.0)
         s = np.clip(s - step, low, high)
     return s
+
+
+@dataclass(frozen=True)
+class _OriginMotion:
+    """How a frame's origin moves on a constant screw, told from where it starts.
+
+    The screw's axis plays no part: it lies very far away when the screw hardly turns.
+
+    Attributes:
+        axis: (..., 3) the screw's direction.
+        angle: (...) rad, turned in unit time.
+        along: (...) m, travelled along the axis in unit time.
+        across, inward: (..., 3) the origin's first velocity across the axis, and the same turned
+            by a right angle about the axis.
+    """
+
+    axis: Array
+    angle: Array
+    along: Array
+    across: Array
+    inward: Array
+
+    @classmethod
+    def between(cls, X_WA: ArrayLike, X_WB: ArrayLike) -> _OriginMotion:
+        V = log(np.asarray(X_WB) @ inverse(X_WA))
+        v = V[..., 3:] + cross(V[..., :3], np.asarray(X_WA)[..., :3, 3])
+        screw = screw_from_twist(np.concatenate([V[..., :3], v], axis=-1))
+        across = v - screw.translation[..., None] * screw.axis
+        return cls(screw.axis, screw.angle, screw.translation, across, cross(screw.axis, across))
+
+    def stretched(self) -> _OriginMotion:
+        """With one more axis at the end of the leading axes."""
+        return _OriginMotion(
+            self.axis[..., None, :],
+            self.angle[..., None],
+            self.along[..., None],
+            self.across[..., None, :],
+            self.inward[..., None, :],
+        )
+
+    def displacement(self, s: ArrayLike) -> Array:
+        """(..., 3) m, from where the origin starts to where it is at s (...)."""
+        s = np.asarray(s, dtype=float)
+        turned = self.angle * s
+        sine = s * np.sinc(turned / np.pi)
+        versine = 0.5 * turned * s * np.sinc(turned / (2.0 * np.pi)) ** 2
+        return (
+            (self.along * s)[..., None] * self.axis
+            + sine[..., None] * self.across
+            + versine[..., None] * self.inward
+        )

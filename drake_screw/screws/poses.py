@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from drake_screw.screws.rotations import (
     Array,
+    cross,
     quaternion_from_rotation,
     rotation_from_quaternion,
     rotation_vector_from_quaternion,
@@ -126,8 +127,8 @@ def log(X: ArrayLike) -> Array:
     half = np.sqrt(np.where(small, 1.0, t2)) / 2.0
     series = 1 / 12 + t2 * (1 / 720 + t2 * (1 / 30240 + t2 * (1 / 1209600 + t2 / 47900160)))
     c = np.where(small, series, (1.0 - half / np.tan(half)) / np.where(small, 1.0, t2))
-    wp = np.cross(w, p)
-    v = p - 0.5 * wp + c[..., None] * np.cross(w, wp)
+    wp = cross(w, p)
+    v = p - 0.5 * wp + c[..., None] * cross(w, wp)
     return np.concatenate([w, v], axis=-1)
 
 

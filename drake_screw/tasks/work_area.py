@@ -62,9 +62,14 @@ class WorkArea:
         return pose_from_planar(x_y_yaw, self.z)
 
     def x_y_yaw(self, X_WO: ArrayLike) -> Array:
-        """The coordinates that `X_WO` of this area takes; (..., k, 4, 4) to (..., k, 3)."""
+        """The coordinates that `X_WO` of this area takes; (..., k, 4, 4) to (..., k, 3).
+
+        Of yaws that differ by whole turns it is the one nearest to the middle of the area.
+        """
         X_WO = np.asarray(X_WO, dtype=float)
         yaw = np.arctan2(X_WO[..., 1, 0], X_WO[..., 0, 0])
+        middle = (self.lower[:, 2] + self.upper[:, 2]) / 2.0
+        yaw = yaw - 2.0 * np.pi * np.round((yaw - middle) / (2.0 * np.pi))
         return np.stack([X_WO[..., 0, 3], X_WO[..., 1, 3], yaw], axis=-1)
 
     def contains(self, x_y_yaw: ArrayLike, *, tolerance: float = 1e-9) -> Array:
