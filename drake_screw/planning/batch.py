@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning.compiled import Kernel, Settings
-from drake_screw.planning.outcomes import Outcomes
+from drake_screw.planning.outcomes import Cause, Outcomes
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import translation_distance
 from drake_screw.screws.rotations import Array
@@ -58,7 +58,10 @@ class BatchPlanner:
             q_start: (n,) rad or m.
 
         Returns:
-            Outcomes (N, D).
+            Outcomes (N, D). A start that is not strictly inside the limits fails at once.
+
+        Raises:
+            ValueError: a demonstration has no guiding poses, or names an object X_WO lacks.
         """
         order = np.arange(len(demonstrations))
         return self._plan(demonstrations, np.asarray(X_WO, dtype=float), q_start, order, False)
@@ -84,11 +87,27 @@ class BatchPlanner:
         order: Array,
         stop_at_success: bool,
     ) -> Outcomes:
+        for d in demonstrations:
+            if len(d.X_OE) == 0 or d.objects.max() >= X_WO.shape[1]:
+                raise ValueError(
+                    f"demonstration '{d.name}' has {len(d.X_OE)} guiding poses for the objects "
+                    f"{sorted(set(d.objects.tolist()))}; X_WO has {X_WO.shape[1]} objects"
+                )
+        q_start = np.asarray(q_start, dtype=float)
+        margin = np.minimum(q_start - self.chain.lower, self.chain.upper - q_start)
+        if (margin <= 0.0).any():
+            shape, joint = (len(X_WO), len(demonstrations)), int(np.argmin(margin))
+            return Outcomes(
+                np.full(shape, Cause.JOINT_LIMIT, dtype=np.uint8),
+                np.zeros(shape, dtype=np.int16),
+                np.full(shape, joint, dtype=np.int8),
+                np.zeros(shape, dtype=np.float32),
+            )
         answers = self._kernel.plan(
             [d.X_OE for d in demonstrations],
             [d.objects for d in demonstrations],
             X_WO,
-            np.asarray(q_start, dtype=float),
+            q_start,
             order,
             stop_at_success=stop_at_success,
             threads=self.threads,

@@ -47,10 +47,15 @@ class ReferencePlanner:
             guides: (g, 4, 4) guiding poses X_WE.
 
         Returns:
-            The plan, up to where it failed if it did.
+            The plan, up to where it failed if it did. A start that is not strictly inside the
+            limits fails at once.
         """
         path, segments, fractions = [np.array(q_start, dtype=float)], [0], [0.0]
         outcome = one_outcome(Cause.SUCCESS)
+        margin = self.arm.margin(path[0])
+        if (margin <= 0.0).any():
+            outcome = one_outcome(Cause.JOINT_LIMIT, 0, int(np.argmin(margin)), 0.0)
+            return Plan(path[0][None], np.array(segments), np.array(fractions), outcome)
         for segment, X_WG in enumerate(np.asarray(guides, dtype=float)):
             points, s, cause, joint = self._follow(path[-1], X_WG)
             path += points

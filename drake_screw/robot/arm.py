@@ -17,6 +17,8 @@ from drake_screw.screws.rotations import Array
 class Arm:
     """Kinematics and limits of some revolute and prismatic joints of a finalized plant.
 
+    `owner` keeps alive what owns the plant: a plant does not keep its diagram.
+
     Args:
         plant: finalized; it stays the source of truth for everything here.
         joint_names: the arm's n joints, base to hand.
@@ -38,6 +40,7 @@ class Arm:
         parked: Mapping[str, float] | None = None,
     ) -> None:
         self.plant = plant
+        self.owner: object = None
         self.joint_names = tuple(joint_names)
         self.end_effector = end_effector
         self._context = plant.CreateDefaultContext()

@@ -12,7 +12,7 @@ from pydrake.geometry import Box, Cylinder, SceneGraph
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
-from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
+from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody, SpatialInertia
 from pydrake.planning import (
     CollisionCheckerParams,
     RobotDiagram,
@@ -152,7 +152,7 @@ def build_workcell(
     model_file, instance = add_robot(builder.parser(), robot)
     if table is not None:
         add_table(plant, table)
-    bodies = tuple(_add_object(plant, item) for item in objects)
+    bodies = tuple(_add_object(plant, item) for item in _named_apart(plant, objects))
     plant.Finalize()
     arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
     if len(robot.start) != arm.n:
@@ -161,6 +161,7 @@ def build_workcell(
         )
     scene_graph = builder.scene_graph()
     diagram = builder.Build()
+    arm.owner = diagram
     checker = SceneGraphCollisionChecker(
         CollisionCheckerParams(model=diagram, robot_model_instances=[instance], edge_step_size=0.05)
     )
@@ -197,6 +198,25 @@ def add_table(plant: MultibodyPlant, table: TableConfig) -> None:
     body = plant.AddRigidBody("table", plant.AddModelInstance("table"), SpatialInertia.Zero())
     plant.WeldFrames(plant.world_frame(), body.body_frame(), X_WT)
     _add_shape(plant, body, box, RigidTransform(), WOOD)
+
+
+def _named_apart(plant: MultibodyPlant, objects: Sequence[ObjectConfig]) -> Sequence[ObjectConfig]:
+    instances = map(ModelInstanceIndex, range(plant.num_model_instances()))
+    bodies = map(BodyIndex, range(plant.num_bodies()))
+    joints = (plant.get_joint(i).name() for i in plant.GetJointIndices())
+    taken = {
+        *map(plant.GetModelInstanceName, instances),
+        *(plant.get_body(i).name() for i in bodies),
+        *joints,
+    }
+    for item in objects:
+        if item.name in taken:
+            raise ModelError(
+                f"the name '{item.name}' of an object is taken",
+                remedy="Name it unlike the table, other objects, and the robot's links and joints.",
+            )
+        taken.add(item.name)
+    return objects
 
 
 def _add_object(plant: MultibodyPlant, item: ObjectConfig) -> RigidBody:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 
 import numpy as np
@@ -211,3 +212,23 @@ def test_extra_joints_keep_their_defaults(tmp_path: Path) -> None:
     np.testing.assert_array_equal(cell.arm.full_positions(STRETCHED), np.zeros(4))
     held = build_workcell(robot(file, end_effector="p3_link", parked={"finger": 0.03}))
     np.testing.assert_array_equal(held.arm.full_positions(STRETCHED), [0.0, 0.0, 0.0, 0.03])
+
+
+def test_an_arm_outlives_the_workcell_it_came_from(shared: Path) -> None:
+    robot = RobotConfig(
+        str(shared / "reference" / "baxter_left_calibrated.sdf"),
+        ("left_s0", "left_s1", "left_e0", "left_e1", "left_w0", "left_w1", "left_w2"),
+        "left_hand",
+        (0.0,) * 7,
+    )
+    arm = build_workcell(robot).arm
+    gc.collect()
+    assert np.isfinite(arm.pose(np.zeros(7))).all()
+
+
+@pytest.mark.parametrize("name", ["table", "baxter", "left_s0", "left_hand"])
+def test_an_object_needs_a_name_of_its_own(name: str) -> None:
+    robot = RobotConfig("baxter", ("left_s0", "left_s1"), "left_hand", (0.0, 0.0))
+    table = TableConfig((0.9, 0.3), (0.7, 1.5), -0.06)
+    with pytest.raises(ModelError, match=f"the name '{name}' of an object is taken"):
+        build_workcell(robot, table=table, objects=[ObjectConfig(name, 0.1, 0.1)])
