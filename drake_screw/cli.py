@@ -5,12 +5,15 @@ from __future__ import annotations
 import logging
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
 from drake_screw.errors import DrakeScrewError
+
+if TYPE_CHECKING:
+    from drake_screw.scenario.schema import Scenario
 
 app = typer.Typer(
     name="drake-screw",
@@ -36,14 +39,15 @@ ModelOption = Annotated[
 ]
 
 
-def _overrides(
-    changes: list[str] | None, model: Path | None = None, seed: int | None = None
-) -> list[str]:
-    return [
-        *(changes or []),
-        *([f"robot.model={model.resolve()}"] if model is not None else []),
-        *([f"seed={seed}"] if seed is not None else []),
-    ]
+def _load(scenario: str, changes: list[str] | None, model: Path | None) -> Scenario:
+    from drake_screw.scenario.loader import load_scenario
+
+    loaded = load_scenario(scenario, changes or [])
+    if model is None:
+        return loaded
+    from drake_screw.scenario.swap import swap_model
+
+    return swap_model(loaded, model)
 
 
 @app.callback()
@@ -82,7 +86,6 @@ def run(
     130: interrupted; --resume carries the run on.
     """
     from drake_screw.scenario.console import show
-    from drake_screw.scenario.loader import load_scenario
     from drake_screw.scenario.runner import new_run, open_run, resumable
 
     console = Console()
@@ -99,11 +102,11 @@ def run(
             "no scenario", remedy="Give a scenario, as in: drake-screw run pouring"
         )
     else:
-        changes = _overrides(set_, model, seed)
+        changes = [*(set_ or []), *([f"seed={seed}"] if seed is not None else [])]
         if demonstrations is not None:
             folder = demonstrations.resolve()
             changes += ["teacher={kind: recorded}", f"teacher.folder={folder}"]
-        job = new_run(load_scenario(scenario, changes), output)
+        job = new_run(_load(scenario, changes, model), output)
     try:
         finished = show(job, console, quiet=quiet)
     except KeyboardInterrupt:
@@ -135,9 +138,8 @@ def evaluate(
     screw segment s at the limit of joint j (both counted from 1), s:n unreachable, s:c collision.
     """
     from drake_screw.scenario.evaluate import evaluate as carry_out
-    from drake_screw.scenario.loader import load_scenario
 
-    loaded = load_scenario(scenario, _overrides(set_, model))
+    loaded = _load(scenario, set_, model)
     Console().print(carry_out(loaded, demonstrations, instances, output), highlight=False)
 
 
@@ -145,10 +147,8 @@ def evaluate(
 def check(scenario: ScenarioArgument, model: ModelOption = None, set_: SetOption = None) -> None:
     """Check a scenario and the files it names, and tell what would run."""
     from drake_screw.scenario.check import check as carry_out
-    from drake_screw.scenario.loader import load_scenario
 
-    loaded = load_scenario(scenario, _overrides(set_, model))
-    Console().print(carry_out(loaded), highlight=False)
+    Console().print(carry_out(_load(scenario, set_, model)), highlight=False)
 
 
 @app.command(epilog="Example:  drake-screw report runs/pouring/2026-11-22_10-15-00")

@@ -180,6 +180,36 @@ def test_evaluate_writes_a_code_for_each_instance_and_demonstration(command, lib
     assert "3 instances x 3 demonstrations" in out
 
 
+def test_another_model_needs_only_the_arm(command, library, places, shared):
+    calibrated = shared / "reference" / "baxter_left_calibrated.sdf"
+    code, _, err = command(
+        "evaluate", "pouring", "--demonstrations", library, "--instances", places,
+        "--output", "out.csv", "--model", calibrated,
+    )  # fmt: skip
+    assert (code, err) == (0, "")
+    assert Path("out.csv").read_text().count("0:0") >= 2
+
+
+@pytest.mark.parametrize("task", ["pouring", "scooping"])
+def test_evaluate_agrees_with_the_outcomes_of_another_planner(command, shared, task, tmp_path):
+    lines = (shared / "reference" / f"outcomes_{task}.csv").read_text().splitlines()
+    theirs = [line.split(",") for line in lines]
+    places = tmp_path / "places.csv"
+    places.write_text("\n".join(",".join(row[:2]) for row in theirs) + "\n")
+    code, _, _ = command(
+        "evaluate", task, "--demonstrations", shared / "demos" / task, "--instances", places,
+        "--output", "out.csv", "--model", shared / "reference" / "baxter_left_calibrated.sdf",
+    )  # fmt: skip
+    assert code == 0
+    ours = [line.split(",") for line in Path("out.csv").read_text().splitlines()]
+    assert ours[0] == theirs[0]
+    a, b = (np.array([row[2:] for row in rows[1:]]) for rows in (ours, theirs))
+    assert ((a == "0:0") == (b == "0:0")).mean() >= 0.994
+    both = (a != "0:0") & (b != "0:0")
+    segment = [np.array([c.split(":")[0] for c in codes[both]]) for codes in (a, b)]
+    assert (segment[0] == segment[1]).mean() >= 0.97
+
+
 def test_check_tells_what_would_run(command):
     code, out, _ = command("check", "pouring")
     assert code == 0
