@@ -2,6 +2,15 @@
 
 from drake_screw.planning.batch import BatchPlanner
 from drake_screw.planning.outcomes import Cause, Outcomes, Plan, concatenate
+from drake_screw.planning.planner import Planner
 from drake_screw.planning.reference import ReferencePlanner
 
-__all__ = ["BatchPlanner", "Cause", "Outcomes", "Plan", "ReferencePlanner", "concatenate"]
+__all__ = [
+    "BatchPlanner",
+    "Cause",
+    "Outcomes",
+    "Plan",
+    "Planner",
+    "ReferencePlanner",
+    "concatenate",
+]

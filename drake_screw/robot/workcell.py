@@ -152,7 +152,7 @@ def build_workcell(
     model_file, instance = add_robot(builder.parser(), robot)
     if table is not None:
         add_table(plant, table)
-    bodies = tuple(_add_object(plant, item) for item in _named_apart(plant, objects))
+    bodies = tuple(add_object(plant, item) for item in _named_apart(plant, objects))
     plant.Finalize()
     arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
     if len(robot.start) != arm.n:
@@ -219,7 +219,8 @@ def _named_apart(plant: MultibodyPlant, objects: Sequence[ObjectConfig]) -> Sequ
     return objects
 
 
-def _add_object(plant: MultibodyPlant, item: ObjectConfig) -> RigidBody:
+def add_object(plant: MultibodyPlant, item: ObjectConfig) -> RigidBody:
+    """Add an object as a free body with a visual and a collision shape."""
     inertia = SpatialInertia.SolidCylinderWithMass(0.3, item.radius, item.height, [0, 0, 1])
     body = plant.AddRigidBody(item.name, plant.AddModelInstance(item.name), inertia)
     X_OC = RigidTransform([0.0, 0.0, item.height / 2.0])

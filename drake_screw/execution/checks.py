@@ -1,0 +1,121 @@
+"""When an execution must not begin, and when it must not go on."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from drake_screw.execution.status import ExecutionStatus, Phase
+from drake_screw.execution.timing import TimedPlan
+from drake_screw.robot import Arm
+from drake_screw.screws.rotations import Array
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """What an execution may deviate.
+
+    Attributes:
+        start: rad, of every joint from the plan's first configuration.
+        position, rotation: m and rad, of the commanded hand from its set point.
+        lag: rad, of a measured joint from its desired position.
+        patience: s, that such a lag may last.
+        final_position, final_rotation: m and rad, of the measured hand at the end.
+        settling: s, that it may take to get there after the plan's time.
+    """
+
+    start: float = 0.02
+    position: float = 5e-3
+    rotation: float = 20e-3
+    lag: float = 0.05
+    patience: float = 0.1
+    final_position: float = 1e-3
+    final_rotation: float = 5e-3
+    settling: float = 1.0
+
+
+def failed(segment: int | None, reason: str) -> ExecutionStatus:
+    """The status of a failure."""
+    return ExecutionStatus(Phase.FAILED, segment, reason)
+
+
+def beginning(
+    plan: TimedPlan | None, arm: Arm, q: Array, tolerances: Tolerances
+) -> ExecutionStatus:
+    """What to do with a new plan when the arm is at q (n,): run it, or why not."""
+    if plan is None:
+        return ExecutionStatus()
+    if not plan.segments:
+        return failed(None, "the plan is empty: it has no screw segments")
+    for i, piece in enumerate(plan.segments):
+        margin = arm.margin(piece.q)
+        if not (margin >= 0.0).all():
+            joint = int(np.argmin(margin.min(axis=0)))
+            return failed(
+                i,
+                f"the plan leaves the limits of {arm.joint_names[joint]} by "
+                f"{-margin[:, joint].min():.4f} rad",
+            )
+        ratio = np.abs(piece.v) / arm.velocity_limits
+        if (ratio > 1.0).any():
+            joint = int(np.argmax(ratio.max(axis=0)))
+            return failed(
+                i,
+                f"the plan drives {arm.joint_names[joint]} at {ratio[:, joint].max():.2f} times "
+                "its velocity limit",
+            )
+    away = np.abs(q - plan.segments[0].q[0])
+    joint = int(np.argmax(away))
+    if away[joint] > tolerances.start:
+        return failed(
+            0,
+            f"the arm is not where the plan starts: {arm.joint_names[joint]} is "
+            f"{away[joint]:.3f} rad away",
+        )
+    return ExecutionStatus(Phase.RUNNING, 0)
+
+
+def worst_lag(arm: Arm, q: Array, measured: Array) -> tuple[float, str]:
+    """How far, in rad, the farthest joint is from its desired position q (n,), and its name."""
+    lag = np.abs(measured - q)
+    joint = int(np.argmax(lag))
+    return float(lag[joint]), arm.joint_names[joint]
+
+
+def apart(X_WA: Array, X_WB: Array) -> tuple[float, float]:
+    """Distance in m and angle in rad between two poses (4, 4); quick, for angles below pi."""
+    R = X_WA[:3, :3].T @ X_WB[:3, :3]
+    sine = math.hypot(R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1])
+    return math.dist(X_WA[:3, 3], X_WB[:3, 3]), math.atan2(sine, np.trace(R) - 1.0)
+
+
+def arrival(
+    plan: TimedPlan, t: float, X_WE: Array, tolerances: Tolerances
+) -> ExecutionStatus | None:
+    """How a plan ended, at time t with the measured hand at X_WE (4, 4); None if it has not."""
+    if t < plan.duration:
+        return None
+    last = len(plan.segments) - 1
+    far, turned = apart(X_WE, plan.segments[last].X_WB)
+    if far <= tolerances.final_position and turned <= tolerances.final_rotation:
+        return ExecutionStatus(Phase.DONE, last)
+    if t > plan.duration + tolerances.settling:
+        return failed(last, f"the hand stays {_words(far, turned)} off the end")
+    return None
+
+
+def out_of_reach(
+    segment: int, X_WE: Array, X_WS: Array, tolerances: Tolerances
+) -> ExecutionStatus | None:
+    """A failure if the commanded hand at X_WE cannot keep up with its set point X_WS (4, 4)."""
+    far, turned = apart(X_WE, X_WS)
+    if far <= tolerances.position and turned <= tolerances.rotation:
+        return None
+    reason = f"the set point is out of reach: the hand falls {_words(far, turned)} behind it"
+    return failed(segment, reason)
+
+
+def _words(far: float, turned: float) -> str:
+    return f"{1e3 * far:.1f} mm and {1e3 * turned:.0f} mrad"

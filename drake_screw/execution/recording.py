@@ -1,0 +1,83 @@
+"""Executions one after the other as one page that plays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydrake.geometry import Meshcat, MeshcatAnimation, MeshcatParams, Rgba
+
+from drake_screw.execution.simulate import Execution
+from drake_screw.execution.station import build_station
+from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
+from drake_screw.screws.rotations import Array
+
+FRAMES = 20  # a second
+PAUSE = 0.6  # s, between executions
+SKY = ([0.93, 0.94, 0.96], [0.70, 0.72, 0.76])
+GOOD, BAD = Rgba(0.12, 0.47, 0.71, 1.0), Rgba(0.84, 0.15, 0.16, 1.0)
+
+
+def recording_html(
+    executions: Sequence[tuple[Execution, ArrayLike]],
+    robot: RobotConfig,
+    *,
+    table: TableConfig | None = None,
+    objects: Sequence[ObjectConfig] = (),
+) -> str:
+    """A self-contained Meshcat page that plays executions, over and over.
+
+    The line is the hand's path: blue where the execution was flawless, red otherwise.
+
+    Args:
+        executions: each with the poses X_WO (k, 4, 4) of the objects.
+        robot, table, objects: as the executions had them.
+    """
+    meshcat = Meshcat(MeshcatParams(host="localhost"))
+    station = build_station(robot, table=table, objects=objects, meshcat=meshcat)
+    for path in ("/Grid", "/Axes"):
+        meshcat.SetProperty(path, "visible", False)
+    meshcat.SetProperty("/Background", "top_color", SKY[0])
+    meshcat.SetProperty("/Background", "bottom_color", SKY[1])
+    _aim(meshcat, [np.asarray(X_WO, dtype=float) for _, X_WO in executions])
+    meshcat.StartRecording(frames_per_second=FRAMES, set_visualizations_while_recording=False)
+    animation = meshcat.get_mutable_recording()
+    began = 0.0
+    for number, (execution, X_WO) in enumerate(executions):
+        path = f"/hand/{number + 1:02d}"
+        _trace(
+            meshcat,
+            path,
+            station.arm.pose(execution.q[:: max(1, len(execution.q) // 300)])[:, :3, 3].T,
+            execution,
+        )
+        root = station.context(execution.q[0], X_WO)
+        context = station.plant.GetMyMutableContextFromRoot(root)
+        positions = station.parked.copy()
+        for t in np.arange(0.0, execution.t[-1], 1.0 / FRAMES):
+            k = min(int(np.searchsorted(execution.t, t)), len(execution.t) - 1)
+            positions[station.columns] = execution.q[k]
+            station.plant.SetPositions(context, station.robot, positions)
+            root.SetTime(began + t)
+            station.diagram.ForcedPublish(root)
+        ended = began + float(execution.t[-1]) + PAUSE
+        first, last = round(FRAMES * began), round(FRAMES * ended) - 1
+        for frame, visible in ((0, number == 0), (first, True), (last, False)):
+            animation.SetProperty(frame, path, "visible", visible)
+        began = ended
+    meshcat.StopRecording()
+    animation.set_loop_mode(MeshcatAnimation.LoopMode.kLoopRepeat)
+    meshcat.PublishRecording()
+    return str(meshcat.StaticHtml())
+
+
+def _trace(meshcat: Meshcat, path: str, points: Array, execution: Execution) -> None:
+    color = GOOD if execution.report.flawless else BAD
+    meshcat.SetLine(path, points, 4.0, color)
+
+
+def _aim(meshcat: Meshcat, X_WO: Sequence[Array]) -> None:
+    places = np.concatenate([X[:, :3, 3] for X in X_WO]) if X_WO else np.zeros((1, 3))
+    target = 0.6 * places.mean(axis=0) + np.array([0.0, 0.0, 0.15])
+    meshcat.SetCameraPose(target + np.array([1.3, -0.3, 0.7]), target)

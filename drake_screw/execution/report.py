@@ -1,0 +1,170 @@
+"""What an execution did, measured against the plan it was given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from drake_screw.execution.status import ExecutionStatus, Phase
+from drake_screw.execution.timing import TimedPlan
+from drake_screw.planning.contract import LENGTH
+from drake_screw.robot import Arm
+from drake_screw.screws import (
+    exp,
+    inverse,
+    log,
+    rotation_angle,
+    translation_distance,
+)
+from drake_screw.screws.rotations import Array, cross
+
+EVERY = 4e-3  # s, between samples at which the hand is looked at
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Two bodies that touched: since when, in which segment, and the greatest force in N."""
+
+    bodies: tuple[str, str]
+    time: float
+    segment: int
+    force: float
+
+    def __str__(self) -> str:
+        a, b = self.bodies
+        return f"{a} touches {b} at {self.time:.2f} s in segment {self.segment + 1}"
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """Greatest and root mean square distance of two poses over time, in m and rad."""
+
+    position: float = 0.0
+    rotation: float = 0.0
+    position_rms: float = 0.0
+    rotation_rms: float = 0.0
+
+
+@dataclass(frozen=True)
+class ExecutionReport:
+    """One execution of a plan.
+
+    Attributes:
+        status: at the end.
+        planned, time: s, length of the plan and of its execution.
+        worst_margin: rad, the least distance to a joint limit; negative outside.
+        worst_joint: the joint that had it.
+        outside: names of the joints that were outside their limits.
+        velocity: greatest joint velocity, over its limit.
+        tracking: of the measured hand from the set point of the same time.
+        screws: of the measured hand from the commanded screw whatever the time, for each segment
+            that was begun.
+        contacts: of the robot with anything, itself included.
+        final: of the measured hand from the last guiding pose, when it ended.
+    """
+
+    status: ExecutionStatus
+    planned: float
+    time: float
+    worst_margin: float
+    worst_joint: str
+    outside: tuple[str, ...]
+    velocity: float
+    tracking: Deviation
+    screws: tuple[Deviation, ...]
+    contacts: tuple[Contact, ...]
+    final: Deviation
+
+    @property
+    def flawless(self) -> bool:
+        """Done, within all joint limits and velocities, and nothing touched."""
+        return (
+            self.status.phase is Phase.DONE
+            and not self.outside
+            and self.velocity <= 1.0
+            and not self.contacts
+        )
+
+
+def make_report(
+    plan: TimedPlan,
+    arm: Arm,
+    t: Array,
+    q: Array,
+    v: Array,
+    status: ExecutionStatus,
+    contacts: Sequence[Contact],
+) -> ExecutionReport:
+    """Measure a plan's execution.
+
+    Args:
+        plan: what was to be done, from time 0.
+        arm: that did it.
+        t: (m,) s, times of the samples.
+        q, v: (m, n) measured.
+        status: at the end.
+        contacts: that were seen.
+    """
+    margin = arm.margin(q)
+    joint = int(np.argmin(margin.min(axis=0)))
+    outside = tuple(
+        name for name, least in zip(arm.joint_names, margin.min(axis=0), strict=True) if least < 0
+    )
+    tracking, screws, final = Deviation(), [], Deviation()
+    if plan.segments:
+        times = np.unique(np.round(t / EVERY).astype(int), return_index=True)[1]
+        points = [plan.at(float(time)) for time in t[times]]
+        segment, s = np.array([p.segment for p in points]), np.array([p.s for p in points])
+        X_WE = arm.pose(q[times])
+        errors = []
+        for i in range(segment.max() + 1):
+            piece, here = plan.segments[i], segment == i
+            X_WS = exp(s[here, None] * piece.twist) @ piece.X_WA
+            errors.append(_distances(X_WE[here], X_WS))
+            nearest = s[here] + _ahead(X_WE[here], X_WS, piece.twist)
+            nearest = np.clip(nearest, 0.0, 1.0)
+            X_WN = exp(nearest[:, None] * piece.twist) @ piece.X_WA
+            screws.append(_deviation(_distances(X_WE[here], X_WN)))
+        tracking = _deviation(np.concatenate(errors))
+        final = _deviation(_distances(arm.pose(q[-1:]), plan.segments[-1].X_WB))
+    return ExecutionReport(
+        status=status,
+        planned=plan.duration,
+        time=float(t[-1]),
+        worst_margin=float(margin.min()),
+        worst_joint=arm.joint_names[joint],
+        outside=outside,
+        velocity=float((np.abs(v) / arm.velocity_limits).max()),
+        tracking=tracking,
+        screws=tuple(screws),
+        contacts=tuple(contacts),
+        final=final,
+    )
+
+
+def _ahead(X_WE: Array, X_WS: Array, twist: Array) -> Array:
+    """How much farther along the screw than S the hand E is (m,), by a step of Gauss-Newton.
+
+    Rotations and translations are weighed by LENGTH, at the hand.
+    """
+    V = _at_hand(log(X_WE @ inverse(X_WS)), X_WS)
+    along = _at_hand(np.broadcast_to(twist, V.shape), X_WS)
+    size = np.maximum(np.sum(along * along, axis=-1), 1e-12)
+    return np.sum(V * along, axis=-1) / size
+
+
+def _at_hand(V: Array, X_WS: Array) -> Array:
+    v = V[..., 3:] + cross(V[..., :3], X_WS[..., :3, 3])
+    return np.concatenate([V[..., :3], v / LENGTH], axis=-1)
+
+
+def _distances(X_WA: Array, X_WB: Array) -> Array:
+    """(m, 2) distances in m and angles in rad of poses (m, 4, 4)."""
+    return np.stack([translation_distance(X_WA, X_WB), rotation_angle(X_WA, X_WB)], axis=-1)
+
+
+def _deviation(distances: Array) -> Deviation:
+    greatest, rms = distances.max(axis=0), np.sqrt((distances**2).mean(axis=0))
+    return Deviation(float(greatest[0]), float(greatest[1]), float(rms[0]), float(rms[1]))

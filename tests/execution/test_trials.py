@@ -1,0 +1,105 @@
+"""Trials as a table and in words, in several processes, and as a page that plays."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from drake_screw.execution import Contact, ExecutionStatus, Phase, recording_html
+from drake_screw.execution.batch import Job, StationConfig, execute_all
+from drake_screw.execution.trials import Trial, summary, trials_csv
+from drake_screw.robot import ObjectConfig
+from drake_screw.screws import pose
+from drake_screw.tasks import ObjectArea, WorkArea
+
+AREA = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.0, 0.8, 0.0), -0.06),))
+X_WO = pose(np.eye(3), [[0.9, 0.6, -0.06]])
+PLACE = np.array([[0.9, 0.6, 0.0]])
+
+
+@pytest.fixture(scope="module")
+def config(robot) -> StationConfig:
+    return StationConfig(robot, None, (ObjectConfig("bowl", 0.08, 0.06),))
+
+
+@pytest.fixture(scope="module")
+def executed(config, guides):
+    beyond = guides.copy()
+    beyond[0, :3, 3] += 3.0
+    return list(execute_all(config, [Job(guides, X_WO), Job(beyond, X_WO)], workers=1))
+
+
+@pytest.fixture
+def trials(executed) -> list[Trial]:
+    good = executed[0]
+    failed = replace(
+        good.report,
+        status=ExecutionStatus(Phase.FAILED, 1, "the arm is blocked"),
+        contacts=(Contact(("left_hand", "bowl"), 1.0, 1, 40.0),),
+    )
+    return [
+        Trial(3, PLACE, "demo_01", "", good),
+        Trial(4, PLACE, "demo_02", "", replace(good, report=failed)),
+        Trial(5, PLACE, "", "left_w1 meets its limit in segment 2", None),
+    ]
+
+
+def test_jobs_are_executed_or_have_no_plan(executed):
+    assert executed[0].report.flawless
+    assert executed[1] is None
+
+
+def test_logs_come_back_thinned_out_with_both_ends(executed):
+    t = executed[0].t
+    assert t[0] == 0.0
+    assert t[-1] == executed[0].report.time
+    assert len(t) == len(executed[0].q) < 200
+
+
+def test_other_processes_answer_the_same(config, guides, executed):
+    jobs = [Job(guides, X_WO)] * 2
+    for execution in execute_all(config, jobs, workers=2):
+        assert execution.report == executed[0].report
+
+
+def test_the_table_has_a_row_for_each_trial(trials):
+    rows = list(csv.DictReader(io.StringIO(trials_csv(trials, AREA))))
+    assert [row["status"] for row in rows] == ["done", "failed", "no plan"]
+    assert [row["region"] for row in rows] == ["3", "4", "5"]
+    assert rows[0]["bowl_x"] == "0.9"
+    assert rows[0]["outside_limits"] == ""
+    assert len(rows[0]["screw_mm"].split(";")) == 2
+    assert 0.0 < float(rows[0]["tracking_mm"]) < 5.0
+    assert rows[1]["segment"] == "2"
+    assert rows[1]["contacts"] == "left_hand - bowl 40 N"
+    assert rows[2]["reason"] == "left_w1 meets its limit in segment 2"
+    assert rows[2]["tracking_mm"] == ""
+
+
+def test_the_summary_counts_and_names_what_went_wrong(trials):
+    text = summary(trials)
+    assert "3 instances, 2 executed" in text
+    assert "done                       1 of 2" in text
+    assert "with contact               1" in text
+    assert "region 5, x 0.900 y 0.600: no plan: left_w1 meets its limit" in text
+    assert "region 4" in text
+    assert "blocked" in text
+    assert "left_hand touches bowl" in text
+    assert "region 3" not in text
+
+
+def test_nothing_executed_is_said_too(trials):
+    assert summary(trials[2:]).splitlines()[0] == "1 instances, 0 executed"
+
+
+def test_the_recording_is_one_page_with_every_execution(config, executed):
+    shown = (executed[0], X_WO)
+    one = recording_html([shown], config.robot, objects=config.objects)
+    two = recording_html([shown, shown], config.robot, objects=config.objects)
+    assert "<html" in one
+    assert "https://" not in one.split("<body")[0]
+    assert len(two) > len(one) + 50_000

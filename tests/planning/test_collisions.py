@@ -1,0 +1,255 @@
+"""Collisions along plans: paths in batches, bounds on clearance, and the planner that uses them."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from pydrake.geometry import Box, Capsule, Cylinder, Ellipsoid, Sphere
+
+from drake_screw.demonstrations import Demonstration
+from drake_screw.planning import BatchPlanner, Cause, ReferencePlanner
+from drake_screw.planning.clearance import bubbles_of, covering, half_extents
+from drake_screw.planning.collisions import SPACING, CollisionFreePlanner, PlanChecker
+from drake_screw.planning.paths import Frames, joint_paths
+from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig, build_workcell
+from drake_screw.screws import exp, pose, rotation_angle, sclerp, translation_distance
+
+START = (1.0434904, -0.2201262, -0.7470486, 1.5243934, 1.8818109, -0.9687089, -0.4908739)
+JOINTS = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
+TABLE = TableConfig((0.85, 0.25), (0.7, 1.3), -0.0645)
+AT = np.array([0.85, 0.25, -0.0644])
+
+
+@pytest.fixture(scope="module")
+def workcell():
+    robot = RobotConfig("baxter", JOINTS, "left_hand", START, parked={"right_s0": -0.767})
+    return build_workcell(robot, table=TABLE, objects=[ObjectConfig("bowl", 0.08, 0.06)])
+
+
+@pytest.fixture(scope="module")
+def checker(workcell) -> PlanChecker:
+    return PlanChecker(workcell)
+
+
+def placed(*places: np.ndarray) -> np.ndarray:
+    """X_WO (N, 1, 4, 4) of the bowl at points."""
+    return pose(np.eye(3), np.array(places))[:, None]
+
+
+def reaching(name: str, *p_OE: tuple[float, float, float]) -> Demonstration:
+    """Guiding poses at points over the bowl, the hand level and pointing along x."""
+    R_OE = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    X_OE = pose(R_OE, np.array(p_OE))
+    kept = np.arange(len(X_OE))
+    return Demonstration(name, X_OE, np.zeros(len(X_OE), dtype=int), placed(AT)[0], X_OE, kept)
+
+
+ABOVE = reaching("above", (-0.15, 0.0, 0.25), (-0.15, 0.0, 0.18))
+THROUGH = reaching("through", (-0.15, 0.0, 0.25), (-0.05, 0.0, 0.05), (-0.15, 0.0, 0.25))
+
+
+def some_places(N: int, seed: int = 0) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    return placed(*(AT + rng.uniform([-0.08, -0.1, 0.0], [0.08, 0.1, 0.0], (N, 3))))
+
+
+def test_frames_are_the_screw_chains(workcell, rng):
+    chain = workcell.arm.screw_chain()
+    frames, q = Frames(chain), rng.uniform(chain.lower, chain.upper, (20, chain.n))
+    np.testing.assert_allclose(frames.pose(q), chain.pose(q), atol=1e-12)
+    np.testing.assert_allclose(frames.jacobian(q), chain.jacobian(q), atol=1e-12)
+
+
+def test_paths_end_where_the_reference_planners_do(workcell, checker):
+    arm, X_WO = workcell.arm, some_places(3)
+    paths = joint_paths(checker.bubbles.frames, ABOVE, X_WO, START)
+    reference = ReferencePlanner(arm, step=0.02)
+    for i in range(3):
+        plan = reference.plan(START, ABOVE.transfer(X_WO[i]))
+        assert plan.success
+        np.testing.assert_allclose(paths.q[i, -1], plan.q[-1], atol=2e-4)
+
+
+def test_paths_stay_on_the_screws_through_all_guiding_poses(checker, workcell):
+    X_WO = some_places(4)
+    paths = joint_paths(checker.bubbles.frames, THROUGH, X_WO, START)
+    assert paths.q.shape[:2] == (4, len(paths.s))
+    assert paths.segment[-1] == 2
+    assert (np.diff(paths.segment) >= 0).all()
+    frames, guides = checker.bubbles.frames, THROUGH.transfer(X_WO)
+    X_WA = frames.pose(np.tile(START, (4, 1)))
+    for k in range(1, len(paths.s)):
+        segment = paths.segment[k]
+        before = X_WA if segment == 0 else guides[:, segment - 1]
+        X_WS = sclerp(before, guides[:, segment], np.full(4, paths.s[k]))
+        X_WE = frames.pose(paths.q[:, k])
+        assert translation_distance(X_WE, X_WS).max() < 2e-4
+        assert rotation_angle(X_WE, X_WS).max() < 1e-3
+
+
+def test_no_instances_make_no_paths(checker):
+    paths = joint_paths(checker.bubbles.frames, ABOVE, some_places(3)[:0], START)
+    assert len(paths.q) == 0
+    found = checker.first_collisions(paths, some_places(3)[:0])
+    assert len(found.collides) == 0
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        Sphere(0.1),
+        Box(0.2, 0.05, 0.6),
+        Cylinder(0.05, 0.7),
+        Cylinder(0.3, 0.02),
+        Capsule(0.04, 0.5),
+        Capsule(0.1, 0.001),
+        Ellipsoid(0.1, 0.2, 0.05),
+    ],
+    ids=lambda shape: type(shape).__name__,
+)
+def test_spheres_cover_shapes(shape, rng):
+    half = half_extents(shape)
+    p = rng.uniform(-half, half, (20_000, 3))
+    match shape:
+        case Sphere() | Ellipsoid():
+            inside = ((p / half) ** 2).sum(axis=1) <= 1.0
+        case Cylinder():
+            inside = np.hypot(p[:, 0], p[:, 1]) <= shape.radius()
+        case Capsule():
+            z = np.clip(p[:, 2], -shape.length() / 2, shape.length() / 2)
+            inside = np.linalg.norm(p - np.outer(z, [0, 0, 1]), axis=1) <= shape.radius()
+        case _:
+            inside = np.ones(len(p), dtype=bool)
+    centers, radius = covering(shape)
+    away = np.linalg.norm(p[inside, None] - centers, axis=-1).min(axis=1)
+    assert away.max() <= radius
+    assert radius <= max(1.3 * np.linalg.norm(np.sort(half)[:2]), 1.01 * half.max())
+
+
+def test_bounds_never_clear_a_collision(workcell, rng):
+    """Whatever Drake finds colliding, the bounds do not call free, and they call much free."""
+    bubbles, arm = bubbles_of(workcell), workcell.arm
+    q = rng.uniform(arm.lower, arm.upper, (600, arm.n))
+    X_WO = np.repeat(some_places(1), 600, axis=0)
+    distance, _ = bubbles(q, X_WO)
+    hit = workcell.collides(q, X_WO)
+    cleared = distance.min(axis=1) > 0.0
+    assert hit.any()
+    assert not (hit & cleared).any()
+    assert cleared.sum() > 0.5 * (~hit).sum()
+
+
+def test_bounds_follow_the_bowl(workcell):
+    bubbles = bubbles_of(workcell)
+    q = np.array(START)[None]
+    p_WE = workcell.arm.pose(START)[:3, 3]
+    near, _ = bubbles(q, placed(p_WE))
+    far, _ = bubbles(q, placed(AT + 0.5 * np.eye(3)[1]))
+    assert near.min() < 0.0 < far.min()
+
+
+def test_a_free_path_is_free(checker):
+    X_WO = some_places(5)
+    paths = joint_paths(checker.bubbles.frames, ABOVE, X_WO, START)
+    found = checker.first_collisions(paths, X_WO)
+    assert not found.collides.any()
+    assert (found.segment == -1).all()
+    assert np.isnan(found.q).all()
+    assert checker.explain(ABOVE, X_WO[0], START) is None
+
+
+def test_first_collisions_are_those_of_a_dense_search(checker, workcell):
+    X_WO = some_places(4)
+    paths = joint_paths(checker.bubbles.frames, THROUGH, X_WO, START)
+    found = checker.first_collisions(paths, X_WO)
+    assert found.collides.all()
+    assert (found.segment == 1).all()
+    share = np.linspace(0.0, 1.0, 40, endpoint=False)[:, None]
+    for i in range(4):
+        steps = itertools.pairwise(paths.q[i])
+        dense = np.concatenate([a + share * (b - a) for a, b in steps])
+        hit = workcell.collides(dense, X_WO[i])
+        at = int(np.argmax(hit))
+        k = at // 40
+        fraction = paths.s[k] * (paths.segment[k] == 1) + (at % 40) / 40 * (
+            paths.s[k + 1] - paths.s[k] * (paths.segment[k] == 1)
+        )
+        assert found.fraction[i] == pytest.approx(fraction, abs=0.06)
+        assert workcell.collides(found.q[i : i + 1], X_WO[i]).all()
+
+
+def test_much_of_a_path_is_cleared_without_asking_drake(workcell):
+    checker, X_WO = PlanChecker(workcell), some_places(6)
+    paths = joint_paths(checker.bubbles.frames, ABOVE, X_WO, START)
+    checker.first_collisions(paths, X_WO)
+    length = translation_distance(
+        checker.bubbles.frames.pose(paths.q[:, :-1].reshape(-1, 7)),
+        checker.bubbles.frames.pose(paths.q[:, 1:].reshape(-1, 7)),
+    ).sum()
+    assert checker.asked < 0.75 * length / SPACING
+
+
+def test_a_collision_is_explained_by_segment_and_bodies(checker):
+    hit = checker.explain(THROUGH, placed(AT)[0], START)
+    assert hit is not None
+    assert hit.segment == 1
+    assert 0.0 < hit.fraction < 1.0
+    assert any("bowl" in pair for pair in hit.bodies)
+    assert "touches" in str(hit)
+    assert str(hit).endswith("in segment 2")
+
+
+@pytest.fixture(scope="module")
+def planners(workcell):
+    batch = BatchPlanner(workcell.arm.screw_chain())
+    return batch, CollisionFreePlanner(batch, workcell)
+
+
+def test_colliding_successes_become_collisions(planners):
+    batch, planner = planners
+    X_WO = some_places(5)
+    before = batch.all_outcomes([ABOVE, THROUGH], X_WO, START)
+    after = planner.all_outcomes([ABOVE, THROUGH], X_WO, START)
+    assert before.success.all()
+    np.testing.assert_array_equal(after.success, [[True, False]] * 5)
+    assert (after.cause[:, 1] == Cause.COLLISION).all()
+    assert (after.codes()[:, 1] == "2:c").all()
+    assert ((after.fraction[:, 1] > 0.0) & (after.fraction[:, 1] < 1.0)).all()
+
+
+def test_any_success_goes_on_to_the_next_demonstration(planners):
+    _, planner = planners
+    outcomes = planner.any_success([THROUGH, ABOVE], some_places(5), START)
+    assert outcomes.any_success.all()
+    assert outcomes.success[:, 1].all()
+
+
+def test_any_success_finds_none_where_all_collide(planners):
+    _, planner = planners
+    outcomes = planner.any_success([THROUGH], some_places(3), START)
+    assert not outcomes.any_success.any()
+    assert (outcomes.cause == Cause.COLLISION).all()
+
+
+def test_failures_within_the_arm_stay_as_they_are(planners):
+    batch, planner = planners
+    far = placed(AT + 1.5 * np.eye(3)[0])
+    before = batch.all_outcomes([ABOVE], far, START)
+    after = planner.all_outcomes([ABOVE], far, START)
+    np.testing.assert_array_equal(before.cause, after.cause)
+    assert not after.success.any()
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(7)
+
+
+def test_a_moving_screw_of_the_bowl_moves_the_answer(checker):
+    """Turning the bowl about its axis changes nothing; the demonstration turns with it."""
+    turned = placed(AT) @ exp(np.array([0.0, 0.0, 0.2, 0.0, 0.0, 0.0]))
+    hit = checker.explain(THROUGH, turned[0], START)
+    assert hit is not None
+    assert hit.segment == 1
