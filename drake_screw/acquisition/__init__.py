@@ -17,6 +17,7 @@ from drake_screw.acquisition.loop import acquire
 from drake_screw.acquisition.recorded import RecordedTeacher
 from drake_screw.acquisition.suggestion import random_suggestion, suggest
 from drake_screw.acquisition.teacher import Lesson, Teacher
+from drake_screw.acquisition.tree_evaluation import TreeEvaluator
 
 __all__ = [
     "DemonstrationAdded",
@@ -33,6 +34,7 @@ __all__ = [
     "Status",
     "Suggestion",
     "Teacher",
+    "TreeEvaluator",
     "acquire",
     "random_suggestion",
     "suggest",

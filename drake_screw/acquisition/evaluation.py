@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from drake_screw.acquisition.events import Evaluation, RegionsEvaluated
 from drake_screw.bandits import Strategy, Verdict
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning import BatchPlanner, Outcomes, concatenate
+from drake_screw.planning import Outcomes, Planner, concatenate
 from drake_screw.screws.rotations import Array
 from drake_screw.tasks import GridRegions, draw
 
@@ -34,7 +34,7 @@ class Evaluator:
             callback where all else about a run is an event of `acquire`.
     """
 
-    planner: BatchPlanner
+    planner: Planner
     regions: GridRegions
     q_start: Array
     strategy: Strategy
@@ -74,6 +74,8 @@ class _Pulls:
 
     def __call__(self, counts: NDArray[np.int64]) -> NDArray[np.int64]:
         before = self._failures.copy()
+        if not counts.any():
+            return np.zeros_like(counts)
         region = np.repeat(np.arange(len(counts)), counts)
         x_y_yaw = np.concatenate(
             [
@@ -83,9 +85,9 @@ class _Pulls:
                     seed=self._by.seed,
                     round=self._round,
                     start=int(self._samples[j]),
-                    count=int(n),
+                    count=int(counts[j]),
                 )
-                for j, n in enumerate(counts)
+                for j in np.flatnonzero(counts).tolist()
             ]
         )
         for first in range(0, len(region), BATCH):

@@ -8,10 +8,11 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_screw.bandits import Verdict
+from drake_screw.bandits import Cell, Verdict
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.planning import Outcomes
 from drake_screw.screws.rotations import Array
+from drake_screw.tasks import Regions, box_regions
 
 
 class Status(StrEnum):
@@ -31,16 +32,26 @@ class Evaluation:
         x_y_yaw: (N, k, 3) m, m, rad.
         region: (N,) the region each was drawn in.
         outcomes: (N, D), one column for each demonstration in hand.
+        frontier: the cells of the tree in which the round ended, where the partition refines
+            itself; `region` counts them.
     """
 
     x_y_yaw: Array
     region: NDArray[np.int64]
     outcomes: Outcomes
+    frontier: tuple[Cell, ...] = ()
 
     @property
     def failed(self) -> NDArray[np.bool_]:
         """(N,) no demonstration gives a plan."""
         return ~self.outcomes.any_success
+
+    def partition(self, start: Regions) -> Regions:
+        """What `region` counts: the cells of the frontier, or `start` where there is none."""
+        if not self.frontier:
+            return start
+        lower = [cell.lower for cell in self.frontier]
+        return box_regions(start.area, lower, [cell.upper for cell in self.frontier])
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +63,13 @@ class Suggestion:
         x_y_yaw: (k, 3) the instance to demonstrate at.
         segment: screw segment, from 0, in which the best attempt there failed; None where there
             was no attempt (an initial demonstration).
+        regions: what `region` counts; None for the run's own partition.
     """
 
     region: int
     x_y_yaw: Array
     segment: int | None = None
+    regions: Regions | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +82,10 @@ class RoundStarted:
 
 @dataclass(frozen=True, eq=False)
 class RegionsEvaluated:
-    """Some more instances of a round were planned; the counts (K,) are of the round so far."""
+    """Some more instances of a round were planned; the counts (K,) are of the round so far.
+
+    Where the partition refines itself they are of the whole work area, (1,).
+    """
 
     round: int
     samples: NDArray[np.int64]
@@ -78,13 +94,14 @@ class RegionsEvaluated:
 
 @dataclass(frozen=True, eq=False)
 class RoundFinished:
-    """A round's verdict, and the next suggestion unless it certified."""
+    """A round's verdict on its regions, and the next suggestion unless it certified."""
 
     round: int
     demonstrations: tuple[Demonstration, ...]
     evaluation: Evaluation
     verdict: Verdict
     suggestion: Suggestion | None
+    regions: Regions
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ from drake_screw.acquisition.suggestion import random_suggestion, suggest
 from drake_screw.acquisition.teacher import Teacher
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
-from drake_screw.tasks import GridRegions
+from drake_screw.tasks import Regions
 
 Evaluate = Callable[[int, tuple[Demonstration, ...], int], tuple[Evaluation, Verdict]]
 """(round, demonstrations, attempt) to what was seen and what it shows; see `Evaluator.evaluate`."""
@@ -47,7 +47,7 @@ def acquire(
     evaluate: Evaluate,
     teacher: Teacher,
     learn: Callable[[Recording], Demonstration],
-    regions: GridRegions,
+    regions: Regions,
     *,
     initial: int | Sequence[Recording],
     budget: int,
@@ -59,7 +59,7 @@ def acquire(
         evaluate: one round of self-evaluation.
         teacher: gives demonstrations.
         learn: turns a recording into a demonstration.
-        regions: the bandit's arms.
+        regions: the bandit's arms; where they refine themselves, what they start from.
         initial: recordings to start from, or how many to ask for at random places.
         budget: most demonstrations in total.
         seed: of the run; with the arguments it determines everything.
@@ -84,10 +84,12 @@ def acquire(
         yield RoundStarted(round, hand.demonstrations)
         evaluation, verdict = evaluate(round, hand.demonstrations, attempt)
         attempt += verdict.attempted
+        here = evaluation.partition(regions)
+        ties = _rng(seed, round, _TIES)
         places = (
             ()
             if verdict.certified
-            else suggest(evaluation, verdict.region, _rng(seed, round, _TIES), count=TRIES)
+            else suggest(evaluation, verdict.region, ties, count=TRIES, regions=here)
         )
         yield RoundFinished(
             round,
@@ -95,6 +97,7 @@ def acquire(
             evaluation,
             verdict,
             places[0] if places else None,
+            here,
         )
         if verdict.certified:
             yield Finished(Status.CERTIFIED, verdict.reason, verdict, hand.demonstrations)

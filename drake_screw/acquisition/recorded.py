@@ -9,7 +9,7 @@ import numpy as np
 from drake_screw.acquisition.events import Suggestion
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import Recording
-from drake_screw.tasks import GridRegions
+from drake_screw.tasks import Regions
 
 
 @dataclass(frozen=True)
@@ -18,11 +18,11 @@ class RecordedTeacher:
 
     Attributes:
         recordings: the library.
-        regions: the partition that requests refer to.
+        regions: the partition that requests refer to, unless they bring their own.
     """
 
     recordings: tuple[Recording, ...]
-    regions: GridRegions
+    regions: Regions
 
     def demonstrate(
         self,
@@ -39,7 +39,7 @@ class RecordedTeacher:
             return Lesson(None, f"all {len(self.recordings)} recordings are used")
         places = self.regions.area.x_y_yaw(np.stack([r.X_WO for r in left]))
         away = np.linalg.norm(places[..., :2] - suggestion.x_y_yaw[..., :2], axis=-1).sum(axis=-1)
-        same = self.regions.index(places) == suggestion.region
+        same = (suggestion.regions or self.regions).index(places) == suggestion.region
         chosen = int(np.lexsort((away, ~same))[0])
         which = (
             f"the nearest unused recording of region {suggestion.region}"

@@ -5,11 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from drake_screw.acquisition.events import Evaluation, Suggestion
-from drake_screw.tasks import GridRegions
+from drake_screw.tasks import Regions
 
 
 def suggest(
-    evaluation: Evaluation, region: int, rng: np.random.Generator, *, count: int = 1
+    evaluation: Evaluation,
+    region: int,
+    rng: np.random.Generator,
+    *,
+    count: int = 1,
+    regions: Regions | None = None,
 ) -> tuple[Suggestion, ...]:
     """Failed instances of a region, the one that failed earliest first.
 
@@ -22,6 +27,7 @@ def suggest(
         region: the weakest region.
         rng: settles ties.
         count: how many at most.
+        regions: goes into the suggestions.
     """
     failed = np.flatnonzero(evaluation.failed & (evaluation.region == region))
     segment = evaluation.outcomes[failed].furthest_segment
@@ -31,12 +37,13 @@ def suggest(
             region,
             evaluation.x_y_yaw[failed[i]],
             int(segment[i]) if segment[i] >= 0 else None,
+            regions,
         )
         for i in order
     )
 
 
-def random_suggestion(regions: GridRegions, rng: np.random.Generator) -> Suggestion:
+def random_suggestion(regions: Regions, rng: np.random.Generator) -> Suggestion:
     """An instance drawn uniformly from the whole work area."""
     x_y_yaw = rng.uniform(regions.area.lower, regions.area.upper)
     return Suggestion(int(regions.index(x_y_yaw)), x_y_yaw)

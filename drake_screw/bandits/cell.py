@@ -70,3 +70,21 @@ class Cell:
             return Cell(low, high, self.depth + 1, self.epoch, points, failed)
 
         return child(self.lower, upper, below), child(lower, self.upper, ~below)
+
+
+def cell_number(lower: np.ndarray, upper: np.ndarray) -> int:
+    """The number of a cell in the tree: 1 for the unit box, 2 i and 2 i + 1 for cell i's halves.
+
+    Args:
+        lower, upper: (d,) its corners.
+    """
+    number = 1
+    depth = -int(np.log2(upper - lower).sum())
+    low, high = np.zeros(len(lower)), np.ones(len(upper))
+    for step in range(depth):
+        axis = step % len(lower)
+        middle = 0.5 * (low[axis] + high[axis])
+        above = bool(lower[axis] >= middle)
+        (low if above else high)[axis] = middle
+        number = 2 * number + above
+    return number

@@ -131,6 +131,18 @@ class CertifyOrSplit:
             total_samples=total,
         )
 
+    def bounds(self, cell: Cell) -> tuple[float, float]:
+        """Bounds on the failure probability of a cell, at its own share of delta.
+
+        With probability 1 - delta those of all cells hold, in all rounds of a run.
+        """
+        low, high = confidence_interval(cell.n, cell.s, self._threshold(cell))
+        return float(low), float(high)
+
+    def least(self, cell: Cell) -> int:
+        """The least number of samples at which the cell clears with the failures it has."""
+        return int(clear_boundary(self._tau(cell), self._threshold(cell))(cell.s))
+
     def _tau(self, cell: Cell) -> float:
         return min(self.goal.tau, self.level * self.smallest / cell.volume)
 
@@ -140,15 +152,11 @@ class CertifyOrSplit:
         share = cell.volume / ((d + 1) * (d + 2) * e * (e + 1))
         return -math.log(self.goal.delta * share)
 
-    def _least(self, cell: Cell) -> int:
-        """The least number of samples at which the cell clears with the failures it has."""
-        return int(clear_boundary(self._tau(cell), self._threshold(cell))(cell.s))
-
     def _settled(self, cell: Cell) -> list[Cell]:
         """The cell, cleared where it clears; its parts, where it has to be split."""
         if cell.cleared or cell.n == 0:
             return [cell]
-        if cell.n >= self._least(cell):
+        if cell.n >= self.least(cell):
             return [replace(cell, cleared=True)]
         if cell.s == 0 or cell.volume <= self.smallest or self._asks(cell):
             return [cell]
@@ -161,12 +169,11 @@ class CertifyOrSplit:
         q = self._tau(cell) * self.goal.q / self.goal.tau
         if ln_e_flag(cell.n, cell.s, q) < c:
             return False
-        low, _ = confidence_interval(cell.n, cell.s, c)
-        return cell.volume <= self.smallest or bool(low >= 0.5)
+        return cell.volume <= self.smallest or self.bounds(cell)[0] >= 0.5
 
     def _count(self, cell: Cell) -> int:
         """Samples to draw next in an uncleared cell."""
-        more = self._least(cell) - cell.n
+        more = self.least(cell) - cell.n
         if cell.s == 0:
             return min(more, max(FIRST, cell.n))
         return max(FIRST, min(more, cell.n))
@@ -174,12 +181,12 @@ class CertifyOrSplit:
     def _claim(self, cell: Cell | None) -> str:
         if cell is None:
             return (
-                f"every dyadic cell of at least {self.smallest:.4g} of the box succeeds at least "
-                f"{1.0 - max(self.level, self.goal.tau):g} of the time, the whole box at least "
-                f"{self.goal.beta:g} (confidence {1.0 - self.goal.delta:g} for the whole run)"
+                f"every dyadic cell that takes up at least {self.smallest:.4g} of the whole "
+                f"succeeds at least {1.0 - max(self.level, self.goal.tau):g} of the time, the "
+                f"whole at least {self.goal.beta:g} (confidence {1.0 - self.goal.delta:g} for the "
+                "whole run)"
             )
-        low = confidence_interval(cell.n, cell.s, self._threshold(cell))[0]
-        return f"this cell fails at least {low:.4f} of the time"
+        return f"this cell fails at least {self.bounds(cell)[0]:.4f} of the time"
 
 
 def _sampled(cell: Cell, pull: CellPull, count: int) -> Cell:

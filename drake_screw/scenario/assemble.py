@@ -9,7 +9,7 @@ import numpy as np
 
 from drake_screw.acquisition import RecordedTeacher, Teacher
 from drake_screw.acquisition.simulated import SimulatedTeacher
-from drake_screw.bandits import Goal, Strategy, make_strategy
+from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import (
     Demonstration,
     Recording,
@@ -19,7 +19,8 @@ from drake_screw.demonstrations import (
     read_recording,
 )
 from drake_screw.errors import ScenarioError
-from drake_screw.planning import BatchPlanner
+from drake_screw.planning import BatchPlanner, Planner
+from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.robot import (
     ObjectConfig,
     RobotConfig,
@@ -29,7 +30,7 @@ from drake_screw.robot import (
     build_workcell,
 )
 from drake_screw.scenario.schema import Scenario
-from drake_screw.tasks import GridRegions, ObjectArea, WorkArea
+from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, free_axes
 
 KEEP_OFF = 0.5
 """m. A hand is never farther than this from the object that it works on."""
@@ -110,14 +111,21 @@ class Setup:
 
     @cached_property
     def regions(self) -> GridRegions:
-        """The bandit's arms."""
+        """The bandit's arms; a single one, from which they start, where they are adaptive."""
         return GridRegions(self.area, np.array(self.scenario.cells))
 
     @cached_property
-    def planner(self) -> BatchPlanner:
-        """The batch planner of the arm."""
+    def batch_planner(self) -> BatchPlanner:
+        """The planner that watches joint limits and reach."""
         chain = self.workcell.arm.screw_chain()
         return BatchPlanner(chain, tolerance=self.scenario.planner.tolerance)
+
+    @cached_property
+    def planner(self) -> Planner:
+        """The planner that decides; it watches collisions, too, where the scenario wants it."""
+        if self.scenario.planner.collision:
+            return CollisionFreePlanner(self.batch_planner, self.workcell)
+        return self.batch_planner
 
     @cached_property
     def goal(self) -> Goal:
@@ -127,9 +135,23 @@ class Setup:
 
     @cached_property
     def strategy(self) -> Strategy:
-        """The bandit."""
+        """The bandit of a grid."""
         block = self.scenario.coverage
         return make_strategy(block.strategy, self.goal, **block.options)
+
+    @cached_property
+    def tree(self) -> CertifyOrSplit | None:
+        """The bandit of adaptive regions; None for a grid."""
+        block = self.scenario.regions.adaptive
+        if block is None:
+            return None
+        axes = int(free_axes(self.area).sum())
+        return CertifyOrSplit(self.goal, axes, block.smallest, block.level)
+
+    @property
+    def bandit(self) -> Strategy | CertifyOrSplit:
+        """The bandit of these regions."""
+        return self.tree or self.strategy
 
     @cached_property
     def segmentation(self) -> SegmentationConfig:

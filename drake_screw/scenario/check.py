@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import time
 
 import numpy as np
 
 from drake_screw.acquisition import RecordedTeacher, random_suggestion
+from drake_screw.bandits import CertifyOrSplit, Strategy
+from drake_screw.bandits.boundary import clear_boundary, deciding_size
+from drake_screw.bandits.eprocess import EProcess
 from drake_screw.bandits.naive_pac import NaivePac, sample_size
+from drake_screw.bandits.spending import attempt_delta
 from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.schema import Scenario
 
@@ -29,7 +34,7 @@ def check(scenario: Scenario) -> str:
         setup.workcell.arm,
         setup.regions,
         setup.goal,
-        setup.strategy,
+        setup.bandit,
     )
     chain = arm.screw_chain()
     lines = [
@@ -37,7 +42,7 @@ def check(scenario: Scenario) -> str:
         f"robot      {setup.workcell.model_file.stem}, {arm.n} joints, hand '{arm.end_effector}', "
         f"reach {chain.reach:.2f} m",
         *_area_lines(setup),
-        f"regions    K = {regions.K}",
+        f"regions    {_regions(setup)}",
         f"goal       every region succeeds at least {goal.beta:g} of the time, accuracy "
         f"{goal.epsilon:g}, confidence {1 - goal.delta:g}",
         f"strategy   {strategy.name}: {strategy.guarantee}",
@@ -67,9 +72,38 @@ def check(scenario: Scenario) -> str:
         lines.append(f"samples    {n:,} in each region, {n * regions.K:,} a round, every round")
         lines.append(f"time       about {n * regions.K / rate:,.0f} s a round or more here")
     else:
-        lines.append("samples    as many as it takes, usually some thousands a round")
+        lines.append(f"samples    {_samples(strategy, regions.K)}")
         lines.append(f"time       {1e4 / rate:,.1f} s for 10,000 instances here")
     return "\n".join(lines)
+
+
+def _regions(setup: Setup) -> str:
+    tree = setup.tree
+    if tree is None:
+        return f"K = {setup.regions.K}"
+    axes = f"{tree.dimension} {'axis' if tree.dimension == 1 else 'axes'}"
+    return (
+        f"adaptive: the work area is halved along its {axes} wherever something fails, down to "
+        f"{tree.smallest:.4g} of it; a cell that fails {tree.level:g} of the time is noticed"
+    )
+
+
+def _samples(strategy: Strategy | CertifyOrSplit, K: int) -> str:
+    """How many instances a round takes, as far as can be said beforehand."""
+    if isinstance(strategy, CertifyOrSplit):
+        least = strategy.least(strategy.start()[0])
+        return f"{least:,} in a first round where nothing fails, otherwise as many as it takes"
+    if not isinstance(strategy, EProcess):
+        return "as many a round as it takes"
+    goal = strategy.goal
+    delta = attempt_delta(goal.delta, 1, spend=strategy.spend)
+    c_clear, c_flag = math.log(1.0 / delta), math.log(K / goal.delta)
+    least = int(clear_boundary(goal.tau, c_clear)(0))
+    most = strategy.cap or deciding_size(goal.tau, c_clear, goal.q, c_flag)
+    return (
+        f"{least * K:,} in a first round where nothing fails ({least} in each region), some "
+        f"thousands where something does, never over {most:,} in a region before one is flagged"
+    )
 
 
 def _area_lines(setup: Setup) -> list[str]:

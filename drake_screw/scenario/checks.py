@@ -44,7 +44,7 @@ def find_problems(scenario: Scenario) -> tuple[Problem, ...]:
     """
     return tuple(_block(scenario, ())) or tuple(
         problem
-        for rule in (_robot, _objects, _grid, _coverage, _demonstrations, _teacher)
+        for rule in (_robot, _objects, _regions, _grid, _coverage, _demonstrations, _teacher)
         for problem in rule(scenario)
     )
 
@@ -151,13 +151,38 @@ def _objects(scenario: Scenario) -> Iterator[Problem]:
             )
 
 
+def _regions(scenario: Scenario) -> Iterator[Problem]:
+    given = [name for name in ("grid", "adaptive") if getattr(scenario.regions, name) is not None]
+    if len(given) != 1:
+        yield Problem(
+            ("regions",),
+            f"expected either grid or adaptive, found {' and '.join(given) or 'neither'}",
+            "Write `grid: {x: 4, y: 4}` for cells of one size, or `adaptive: {}` for cells that "
+            "are halved wherever something fails.",
+        )
+    if scenario.regions.adaptive is None:
+        return
+    if all(getattr(o, axis).fixed for o in scenario.objects for axis in AXES):
+        yield Problem(
+            ("regions", "adaptive"),
+            "there is nothing to split: x, y and yaw of every object are fixed",
+            "Give an object a range, or write `grid: {}` for a single region.",
+        )
+    if scenario.coverage.options:
+        yield Problem(
+            ("coverage", "options"),
+            "adaptive regions bring a strategy of their own, which has no options here",
+            "Leave the options out; what can be chosen is in regions.adaptive.",
+        )
+
+
 def _grid(scenario: Scenario) -> Iterator[Problem]:
     axes: dict[str, tuple[ObjectBlock, str]] = {}
     if len(scenario.objects) == 1:
         axes.update({axis: (scenario.objects[0], axis) for axis in AXES})
     axes.update({f"{o.name}.{axis}": (o, axis) for o in scenario.objects for axis in AXES})
     used: dict[tuple[str, str], str] = {}
-    for name, count in scenario.regions.grid.items():
+    for name, count in (scenario.regions.grid or {}).items():
         keys = ("regions", "grid", name)
         if name not in axes:
             reason = "is an axis of every object" if name in AXES else "is no axis of an object"

@@ -12,10 +12,10 @@ from drake_screw.acquisition import (
     RoundStarted,
     Suggestion,
 )
-from drake_screw.tasks import GridRegions
+from drake_screw.tasks import Regions
 
 
-def describe(event: Event, regions: GridRegions) -> str:
+def describe(event: Event, regions: Regions) -> str:
     """One line on an event."""
     match event:
         case RoundStarted():
@@ -26,8 +26,9 @@ def describe(event: Event, regions: GridRegions) -> str:
             verdict = event.verdict
             weakest = verdict.estimates[verdict.region]
             return (
-                f"round {event.round + 1}: {verdict.total_samples:,} instances; weakest region "
-                f"{verdict.region} ({regions.name(verdict.region)}) fails {weakest:.2%}; "
+                f"round {event.round + 1}: {len(event.evaluation.region):,} instances; weakest "
+                f"region {verdict.region} ({event.regions.name(verdict.region)}) fails "
+                f"{weakest:.2%}; "
                 f"{verdict.reason}"
             )
         case DemonstrationRequested():
@@ -43,7 +44,7 @@ def describe(event: Event, regions: GridRegions) -> str:
             return f"{event.status.value}: {event.reason}"
 
 
-def place(suggestion: Suggestion, regions: GridRegions) -> str:
+def place(suggestion: Suggestion, regions: Regions) -> str:
     """Where a demonstration is wanted."""
     objects = zip(regions.area.objects, suggestion.x_y_yaw, strict=True)
     where = ", ".join(

@@ -16,7 +16,7 @@ def draw_round(setup: Setup) -> Callable[[RoundFinished, Path], None]:
     """A function that draws a round as ``<stem>.png`` and ``<stem>.svg``."""
 
     def draw(event: RoundFinished, stem: Path) -> None:
-        save_heat_map(event, setup.regions, stem, scenario=setup.scenario.name)
+        save_heat_map(event, event.regions, stem, scenario=setup.scenario.name)
 
     return draw
 
@@ -25,11 +25,11 @@ def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> Non
     """Draw a whole run into a folder: rounds.png, rounds.svg and meshcat.html."""
     if not rounds:
         return
-    name = setup.scenario.name
-    save_run_figure(rounds, setup.regions, folder / "rounds", scenario=name, beta=setup.goal.beta)
+    name, regions = setup.scenario.name, [event.regions for event in rounds]
+    save_run_figure(rounds, regions, folder / "rounds", scenario=name, beta=setup.goal.beta)
     scene = make_scene(setup)
     for event in rounds:
-        scene.show_round(event, setup.regions)
+        scene.show_round(event, event.regions)
     scene.save_html(folder / "meshcat.html")
 
 

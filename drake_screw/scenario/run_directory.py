@@ -20,8 +20,8 @@ from drake_screw.acquisition import Evaluation, RoundFinished, Status, Suggestio
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Recording, write_recording
 from drake_screw.errors import RunDirectoryError
-from drake_screw.planning import Outcomes
-from drake_screw.tasks import GridRegions
+from drake_screw.scenario.evaluation_file import load_evaluation, save_evaluation
+from drake_screw.tasks import Regions
 
 FORMAT = 1
 RUN, SCENARIO, LOG = "run.json", "scenario.yaml", "run.log"
@@ -153,7 +153,7 @@ class RunDirectory:
     def add_round(
         self,
         event: RoundFinished,
-        regions: GridRegions,
+        regions: Regions,
         draw: Callable[[RoundFinished, Path], None],
     ) -> None:
         """Store a round: its table of regions, its instances, its pictures, the suggestion."""
@@ -193,27 +193,6 @@ class RunDirectory:
             ) from error
 
 
-def save_evaluation(file: Path, evaluation: Evaluation) -> None:
-    """Write the instances of a round and their outcomes as .npz."""
-    outcomes = evaluation.outcomes
-    np.savez_compressed(
-        file,
-        x_y_yaw=evaluation.x_y_yaw,
-        region=evaluation.region.astype(np.uint16),
-        cause=outcomes.cause,
-        segment=outcomes.segment,
-        joint=outcomes.joint,
-        fraction=outcomes.fraction,
-    )
-
-
-def load_evaluation(file: Path) -> Evaluation:
-    """Read what `save_evaluation` wrote."""
-    with np.load(file) as data:
-        outcomes = Outcomes(data["cause"], data["segment"], data["joint"], data["fraction"])
-        return Evaluation(data["x_y_yaw"], data["region"].astype(np.int64), outcomes)
-
-
 def write_text(file: Path, text: str) -> None:
     """Write a file so that it is there whole or not at all."""
     temporary = file.with_name(f".{file.name}.part")
@@ -245,7 +224,7 @@ def _fresh(parent: Path) -> Path:
     return path
 
 
-def _round_record(event: RoundFinished, regions: GridRegions) -> dict[str, Any]:
+def _round_record(event: RoundFinished, regions: Regions) -> dict[str, Any]:
     verdict = event.verdict
     fields = asdict(verdict)
     for name in _ARRAYS:
@@ -253,7 +232,7 @@ def _round_record(event: RoundFinished, regions: GridRegions) -> dict[str, Any]:
     return {
         "round": event.round + 1,
         "demonstrations": len(event.demonstrations),
-        "samples": verdict.samples.tolist(),
+        "samples": np.bincount(event.evaluation.region, minlength=regions.K).tolist(),
         "failure_rates": verdict.estimates.tolist(),
         "weakest_region": verdict.region,
         "certified": verdict.certified,
@@ -265,7 +244,7 @@ def _round_record(event: RoundFinished, regions: GridRegions) -> dict[str, Any]:
     }
 
 
-def _suggestion(suggestion: Suggestion, regions: GridRegions) -> dict[str, Any]:
+def _suggestion(suggestion: Suggestion, regions: Regions) -> dict[str, Any]:
     objects = zip(regions.area.objects, suggestion.x_y_yaw.tolist(), strict=True)
     return {
         "region": suggestion.region,
@@ -275,7 +254,7 @@ def _suggestion(suggestion: Suggestion, regions: GridRegions) -> dict[str, Any]:
     }
 
 
-def _regions_csv(verdict: Verdict, regions: GridRegions) -> str:
+def _regions_csv(verdict: Verdict, regions: Regions) -> str:
     axes = [f"{o.name}_{a}" for o in regions.area.objects for a in ("x", "y", "yaw")]
     header = ["region", *(f"{a}_{end}" for a in axes for end in ("min", "max"))]
     rows = [",".join([*header, "samples", "failures", "failure_rate", "lower", "upper"])]

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,12 +19,14 @@ from drake_screw.acquisition import (
     RoundFinished,
     Status,
     Suggestion,
+    TreeEvaluator,
     acquire,
 )
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording, read_recording
 from drake_screw.errors import RunDirectoryError
 from drake_screw.scenario.assemble import Setup
+from drake_screw.scenario.certificate import certificate
 from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.scenario.narration import describe
 from drake_screw.scenario.pictures import draw_round, draw_run
@@ -83,20 +84,17 @@ class Run:
 
     def _acquire(self, progress: Callable[[RegionsEvaluated], None] | None) -> Iterator[Event]:
         setup, scenario = self.setup, self.setup.scenario
-        evaluator = Evaluator(
-            setup.planner,
-            setup.regions,
-            setup.workcell.start,
-            setup.strategy,
-            scenario.seed,
-            progress,
-        )
+        evaluator = make_evaluator(setup, progress)
 
         def evaluate(
             round: int, demonstrations: tuple[Demonstration, ...], attempt: int
         ) -> tuple[Evaluation, Verdict]:
             remembered = self.directory.remembered_round(round)
-            return remembered or evaluator.evaluate(round, demonstrations, attempt)
+            if remembered is None:
+                return evaluator.evaluate(round, demonstrations, attempt)
+            if isinstance(evaluator, TreeEvaluator):
+                evaluator.remember(remembered[0])
+            return remembered
 
         initial = setup.initial
         if not isinstance(initial, int):
@@ -141,13 +139,13 @@ class Run:
         self._log(describe(event, self.setup.regions))
         if isinstance(event, RoundFinished):
             if event.round >= len(self.directory.record["rounds"]):
-                self.directory.add_round(event, self.setup.regions, draw_round(self.setup))
+                self.directory.add_round(event, event.regions, draw_round(self.setup))
         elif isinstance(event, Finished):
             draw_run(self.setup, self._rounds(event), self.directory.path)
             self.directory.save(
                 status=event.status.value,
                 reason=event.reason,
-                certificate=certificate(self.setup, event),
+                certificate=certificate(self.setup, event, self.directory.record["rounds"]),
                 finished=datetime.now().astimezone().isoformat(timespec="seconds"),
             )
 
@@ -184,6 +182,16 @@ class _KeptTeacher:
         return Lesson(run._kept(number, lesson.recording, lesson.remark), lesson.remark)
 
 
+def make_evaluator(
+    setup: Setup, progress: Callable[[RegionsEvaluated], None] | None = None
+) -> Evaluator | TreeEvaluator:
+    """What carries out the rounds of a scenario."""
+    planner, start, seed = setup.planner, setup.workcell.start, setup.scenario.seed
+    if setup.tree is not None:
+        return TreeEvaluator(planner, setup.area, start, setup.tree, seed, progress)
+    return Evaluator(planner, setup.regions, start, setup.strategy, seed, progress)
+
+
 def new_run(scenario: Scenario, output: Path | None = None) -> Run:
     """Check a scenario to the bottom, then make its run directory.
 
@@ -192,15 +200,15 @@ def new_run(scenario: Scenario, output: Path | None = None) -> Run:
     """
     setup = Setup(scenario)
     model = setup.workcell.model_file
-    for part in (setup.strategy, setup.teacher, setup.initial):
+    for part in (setup.strategy, setup.bandit, setup.teacher, setup.initial):
         assert part is not None
     facts = {
         "seed": scenario.seed,
-        "strategy": scenario.coverage.strategy,
+        "strategy": setup.bandit.name,
         "beta": scenario.coverage.beta,
         "epsilon": scenario.coverage.epsilon,
         "delta": scenario.coverage.delta,
-        "regions": setup.regions.K,
+        "regions": setup.regions.K if setup.tree is None else "adaptive",
         "model": str(model),
         "hashes": {"model": file_hash(model)},
     }
@@ -247,26 +255,3 @@ def redraw(run: Run) -> list[RoundFinished]:
         draw_round(run.setup)(event, run.directory.round_folder(event.round) / "heat_map")
     draw_run(run.setup, rounds, run.directory.path)
     return rounds
-
-
-def certificate(setup: Setup, finished: Finished) -> dict[str, Any]:
-    """What a finished run states, in plain data."""
-    verdict = finished.verdict
-    block = setup.scenario.coverage
-    stated: dict[str, Any] = {
-        "certified": finished.status is Status.CERTIFIED,
-        "regions": setup.regions.K,
-        "strategy": block.strategy,
-        "guarantee": setup.strategy.guarantee,
-        "beta": block.beta,
-        "epsilon": block.epsilon,
-        "delta": block.delta,
-        "demonstrations": len(finished.demonstrations),
-    }
-    if verdict is not None:
-        stated |= {
-            "claim": verdict.claim,
-            "coverage": block.beta if verdict.certified else verdict.coverage,
-            "fresh_instances": verdict.total_samples,
-        }
-    return stated

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any, NewType
 
 STRATEGIES = (
-    "naive_pac",
     "eprocess",
+    "naive_pac",
     "clopper_pearson",
     "successive_elimination",
     "lucb",
@@ -110,11 +110,33 @@ class ObjectBlock:
 
 
 @dataclass(frozen=True, kw_only=True)
+class AdaptiveBlock:
+    smallest: float = key(
+        "share of the work area that the smallest cells told apart take up",
+        default=1 / 256,
+        at_least=1e-9,
+        below=1,
+    )
+    level: float = key(
+        "failure probability that a cell of that size may have without being noticed",
+        default=0.5,
+        above=0,
+        below=1,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class RegionsBlock:
-    grid: dict[str, int] = key(
+    grid: dict[str, int] | None = key(
         "number of cells per axis: x, y, yaw of the only object, or <object>.x and so on; "
         "an axis not named has one cell",
+        default=None,
         at_least=1,
+    )
+    adaptive: AdaptiveBlock | None = key(
+        "cells that are halved wherever something fails, instead of a grid; they bring a strategy "
+        "of their own",
+        default=None,
     )
 
 
@@ -135,9 +157,7 @@ class CoverageBlock:
         above=0,
         below=1,
     )
-    strategy: str = key(
-        "the bandit that measures coverage", default="naive_pac", choices=STRATEGIES
-    )
+    strategy: str = key("the bandit that measures coverage", default="eprocess", choices=STRATEGIES)
     options: dict[str, bool | int | float | str] = key(
         "options of the strategy", default_factory=dict
     )
@@ -201,6 +221,10 @@ class SegmentationBlock:
 @dataclass(frozen=True, kw_only=True)
 class PlannerBlock:
     tolerance: float = key("error per step of the joint path", unit="rad", default=1e-4, above=0)
+    collision: bool = key(
+        "whether a plan that touches the robot itself, the table or an object fails",
+        default=False,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -230,8 +254,8 @@ class Scenario:
 
     @property
     def cells(self) -> tuple[tuple[int, int, int], ...]:
-        """Number of cells along x, y, yaw of each object."""
-        grid = self.regions.grid
+        """Number of cells along x, y, yaw of each object; to begin with, where adaptive."""
+        grid = self.regions.grid or {}
         short = grid if len(self.objects) == 1 else {}
 
         def count(name: str, axis: str) -> int:

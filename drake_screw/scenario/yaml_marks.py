@@ -82,12 +82,21 @@ for _name, _pattern, _first in (
 
 
 class Dumper(yaml.SafeDumper):
-    """Writes YAML that `parse` reads back unchanged: quotes text that looks like a number."""
+    """Writes YAML that `parse` reads back unchanged.
+
+    Quotes text that looks like a number, and escapes what is not printable, such as the line
+    breaks of Unicode, which a reader would fold.
+    """
 
     def ignore_aliases(self, data: object) -> bool:
         return True
 
+    def represent_str(self, data: str) -> yaml.ScalarNode:
+        style = None if data.isprintable() else '"'
+        return self.represent_scalar(_TAG + "str", data, style=style)
 
+
+Dumper.add_representer(str, Dumper.represent_str)
 Dumper.add_implicit_resolver(_TAG + "float", _FLOAT, list("-+.0123456789"))
 
 

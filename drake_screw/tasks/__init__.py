@@ -1,7 +1,21 @@
 """Work areas, their regions, and task instances drawn from them."""
 
-from drake_screw.tasks.regions import GridRegions, grid_regions
-from drake_screw.tasks.sampling import draw
+from drake_screw.tasks.boxes import BoxRegions, box_regions, free_axes, from_unit_box
+from drake_screw.tasks.regions import GridRegions, Regions, grid_regions
+from drake_screw.tasks.sampling import draw, uniform
 from drake_screw.tasks.work_area import AXES, ObjectArea, WorkArea
 
-__all__ = ["AXES", "GridRegions", "ObjectArea", "WorkArea", "draw", "grid_regions"]
+__all__ = [
+    "AXES",
+    "BoxRegions",
+    "GridRegions",
+    "ObjectArea",
+    "Regions",
+    "WorkArea",
+    "box_regions",
+    "draw",
+    "free_axes",
+    "from_unit_box",
+    "grid_regions",
+    "uniform",
+]

@@ -4,12 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.screws.rotations import Array
 from drake_screw.tasks.work_area import AXES, WorkArea
+
+
+class Regions(Protocol):
+    """A partition of the work area into boxes, numbered from 0."""
+
+    @property
+    def area(self) -> WorkArea:
+        """The work area."""
+
+    @property
+    def K(self) -> int:
+        """Number of regions."""
+
+    @property
+    def shares(self) -> Array:
+        """(K,) share of the work area that each region takes up."""
+
+    def bounds(self, region: ArrayLike) -> tuple[Array, Array]:
+        """Least and greatest x, y, yaw of regions; (...) to two arrays (..., k, 3)."""
+
+    def index(self, x_y_yaw: ArrayLike) -> NDArray[np.int64]:
+        """The region of each instance, the nearest one if it lies outside; (..., k, 3) to (...)."""
+
+    def name(self, region: int) -> str:
+        """What people call a region."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +57,11 @@ class GridRegions:
     def K(self) -> int:
         """Number of regions."""
         return int(np.prod(self.counts))
+
+    @property
+    def shares(self) -> Array:
+        """(K,) share of the work area that each region takes up: 1 / K."""
+        return np.full(self.K, 1.0 / self.K)
 
     def cell(self, region: ArrayLike) -> NDArray[np.int64]:
         """Integer coordinates of regions; (...) to (..., k, 3)."""
@@ -62,14 +93,27 @@ class GridRegions:
 
     def name(self, region: int) -> str:
         """What people call a region: its ranges along the axes that are split."""
-        lower, upper = self.bounds(region)
-        several = len(self.area.objects) > 1
-        parts = [
-            f"{self.area.objects[i].name + ' ' if several else ''}{AXES[j]} "
-            f"{lower[i, j]:.2f}..{upper[i, j]:.2f}"
-            for i, j in zip(*np.nonzero(self.counts > 1), strict=True)
-        ]
-        return ", ".join(parts) or "the whole work area"
+        return ranges(self.area, *self.bounds(region), self.counts > 1)
+
+
+def ranges(
+    area: WorkArea, lower: Array, upper: Array, split: NDArray[np.bool_], *, digits: int = 2
+) -> str:
+    """A box in words: its ranges along the axes that are split.
+
+    Args:
+        area: names the objects.
+        lower, upper: (k, 3) corners.
+        split: (k, 3) the axes to tell.
+        digits: behind the point.
+    """
+    several = len(area.objects) > 1
+    parts = [
+        f"{area.objects[i].name + ' ' if several else ''}{AXES[j]} "
+        f"{lower[i, j]:.{digits}f}..{upper[i, j]:.{digits}f}"
+        for i, j in zip(*np.nonzero(split), strict=True)
+    ]
+    return ", ".join(parts) or "the whole work area"
 
 
 def grid_regions(area: WorkArea, counts: Mapping[str, int]) -> GridRegions:

@@ -9,17 +9,44 @@ from __future__ import annotations
 import numpy as np
 
 from drake_screw.screws.rotations import Array
-from drake_screw.tasks.regions import GridRegions
+from drake_screw.tasks.regions import Regions
 
 CHUNK = 1024
 
 
-def draw(
-    regions: GridRegions, region: int, *, seed: int, round: int, start: int, count: int
+def uniform(
+    width: tuple[int, ...], *, seed: int, key: tuple[int, ...], start: int, count: int
 ) -> Array:
+    """Numbers from [0, 1), a stretch of an endless stream.
+
+    Chunk c of 1,024 of its items comes from ``SeedSequence(seed, spawn_key=(*key, c))``.
+
+    Args:
+        width: shape of one item.
+        seed: of the run.
+        key: of the stream.
+        start, count: which items.
+
+    Returns:
+        (count, *width).
+    """
+    if count == 0:
+        return np.empty((0, *width))
+    first, last = start // CHUNK, (start + count - 1) // CHUNK
+    chunks = [
+        np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(*key, chunk))).random(
+            (CHUNK, *width)
+        )
+        for chunk in range(first, last + 1)
+    ]
+    offset = start - first * CHUNK
+    return np.concatenate(chunks)[offset : offset + count]
+
+
+def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, count: int) -> Array:
     """Instances drawn uniformly and independently in one region.
 
-    Chunk c of 1,024 instances comes from ``SeedSequence(seed, spawn_key=(round, region, c))``.
+    They are the stream of `uniform` with key (round, region).
 
     Args:
         regions: the partition.
@@ -31,17 +58,6 @@ def draw(
     Returns:
         x_y_yaw: (count, k, 3) m, m, rad.
     """
-    if count == 0:
-        return np.empty((0, *regions.counts.shape))
     lower, upper = regions.bounds(region)
-    first, last = start // CHUNK, (start + count - 1) // CHUNK
-    unit = np.concatenate(
-        [
-            np.random.default_rng(
-                np.random.SeedSequence(seed, spawn_key=(round, region, chunk))
-            ).random((CHUNK, *regions.counts.shape))
-            for chunk in range(first, last + 1)
-        ]
-    )
-    offset = start - first * CHUNK
-    return lower + unit[offset : offset + count] * (upper - lower)
+    unit = uniform(lower.shape, seed=seed, key=(round, region), start=start, count=count)
+    return lower + unit * (upper - lower)

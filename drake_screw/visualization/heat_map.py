@@ -20,7 +20,7 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
 
 from drake_screw.planning import Cause
-from drake_screw.tasks import GridRegions
+from drake_screw.tasks import Regions
 from drake_screw.visualization.cell_text import MARK, write_estimates
 from drake_screw.visualization.palette import (
     ACCENT,
@@ -45,7 +45,7 @@ GRID = "#b9b4c6"
 
 
 def draw_heat_map(
-    ax: Axes, event: Round, regions: GridRegions, *, dots: int = MOST_DOTS, text: bool = True
+    ax: Axes, event: Round, regions: Regions, *, dots: int = MOST_DOTS, text: bool = True
 ) -> Sample:
     """Draw one round into `ax`: estimates, instances, demonstrations, weakest region, suggestion.
 
@@ -79,18 +79,19 @@ def draw_heat_map(
 
 
 def heat_map_figure(
-    event: Round, regions: GridRegions, *, scenario: str = "", dots: int = MOST_DOTS
+    event: Round, regions: Regions, *, scenario: str = "", dots: int = MOST_DOTS
 ) -> Figure:
     """A figure of one round with title, colour bar and legend; not registered with pyplot."""
     drawn = cells(regions, event.verdict.estimates)
     depth, width = drawn.upper.max(axis=0) - drawn.lower.min(axis=0)
     height = float(np.clip(7.6 * depth / max(width, 1e-9), 2.2, 7.6))
+    caption = fill(_caption(event, regions, drawn), 120)
+    height += 0.2 * caption.count("\n")
     figure = Figure(figsize=(9.6, height + 1.6), layout="constrained")
     ax = figure.add_subplot()
     figure.get_layout_engine().execute(figure)
     shown = draw_heat_map(ax, event, regions, dots=dots)
     title = f"{scenario}: {headline(event)}" if scenario else headline(event)
-    caption = fill(_caption(event, regions, drawn), 120)
     blank = "\n" * (1 + caption.count("\n"))
     ax.set_title(title + blank, fontsize=12, fontweight="bold", loc="left", color=INK)
     offset = {"xytext": (0, 6), "textcoords": "offset points", "va": "bottom"}
@@ -112,7 +113,7 @@ def heat_map_figure(
 
 def save_heat_map(
     event: Round,
-    regions: GridRegions,
+    regions: Regions,
     stem: str | Path,
     *,
     scenario: str = "",
@@ -159,11 +160,12 @@ def legend_handles(event: Round, shown: Sample) -> list[Line2D | Patch]:
     return handles
 
 
-def _caption(event: Round, regions: GridRegions, drawn: Cells) -> str:
+def _caption(event: Round, regions: Regions, drawn: Cells) -> str:
     objects = regions.area.objects
     parts = [details(event, regions)]
     if drawn.stack > 1:
-        parts.append(f"each cell shows the worst of {drawn.stack} regions")
+        most = "" if drawn.stack * len(drawn.region) == regions.K else "up to "
+        parts.append(f"each cell shows the worst of {most}{drawn.stack} regions")
     if len(objects) > 1:
         parts.append(f"places of {objects[drawn.object].name}")
     return "; ".join(parts)
@@ -182,16 +184,17 @@ def _frame(ax: Axes, drawn: Cells) -> None:
 
 def _draw_cells(ax: Axes, drawn: Cells, event: Round) -> None:
     estimates = event.verdict.estimates
-    weakest = drawn.of_region[event.verdict.region]
     for cell, region in enumerate(drawn.region):
         (x0, y0), (x1, y1) = drawn.lower[cell], drawn.upper[cell]
         box = {"xy": (y0, x0), "width": y1 - y0, "height": x1 - x0}
         color = tuple(failure_color(estimates[region]))
         ax.add_patch(Rectangle(**box, facecolor=color, edgecolor=GRID, gid=f"cell{cell}"))
-        if cell == weakest:
-            for edge, line, gid in ((PAPER, 5.0, "halo"), (INK, 2.4, "weakest")):
-                style = {"edgecolor": edge, "linewidth": line, "gid": gid}
-                ax.add_patch(Rectangle(**box, **style, fill=False, zorder=5, clip_on=False))
+    (x0, y0), (x1, y1) = drawn.outlines[event.verdict.region]
+    for edge, line, gid in ((PAPER, 5.0, "halo"), (INK, 2.4, "weakest")):
+        style = {"edgecolor": edge, "linewidth": line, "gid": gid}
+        frame = Rectangle((y0, x0), y1 - y0, x1 - x0, **style, fill=False, zorder=5)
+        frame.set_clip_on(False)
+        ax.add_patch(frame)
 
 
 def _draw_instances(ax: Axes, drawn: Cells, shown: Sample) -> None:

@@ -10,7 +10,7 @@ from html import escape
 import numpy as np
 from matplotlib.colors import to_hex
 
-from drake_screw.tasks import GridRegions
+from drake_screw.tasks import Regions
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -66,7 +66,7 @@ class Slide:
     demonstrations: int
 
 
-def slide(event: Round, regions: GridRegions) -> Slide:
+def slide(event: Round, regions: Regions) -> Slide:
     """What the page says of a round."""
     name, count = f"{event.round + 1:02d}", len(event.demonstrations)
     return Slide(name, headline(event), details(event, regions), count)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from drake_screw.planning import Cause
-from drake_screw.tasks import GridRegions
+from drake_screw.tasks import Regions
 from drake_screw.visualization.heat_map import (
     add_colour_bar,
     draw_heat_map,
@@ -25,16 +25,23 @@ COLUMNS = 3
 DOTS = 400
 
 
-def draw_progress(ax: Axes, events: Sequence[Round], *, beta: float | None = None) -> None:
+def draw_progress(
+    ax: Axes,
+    events: Sequence[Round],
+    regions: Sequence[Regions] | None = None,
+    *,
+    beta: float | None = None,
+) -> None:
     """Draw into `ax` the failure probability of each round, of the weakest region and of all.
 
     The line of the weakest is the largest estimate; its band reaches from the largest lower to the
     largest upper confidence bound of all regions, at the strategy's own level. All regions
-    together are the mean of their estimates, as they are equally large.
+    together are the mean of their estimates, each by its share of the work area.
 
     Args:
         ax: gets limits and axis labels.
         events: at least one round, in order.
+        regions: those of each round; None if they are equally large.
         beta: coverage asked for; draws the line 1 - beta that must not be exceeded.
     """
     numbers = [event.round + 1 for event in events]
@@ -48,8 +55,9 @@ def draw_progress(ax: Axes, events: Sequence[Round], *, beta: float | None = Non
     ax.fill_between(numbers, low, high, color=color, alpha=0.2, linewidth=0)
     style = {"color": color, "marker": "o", "capsize": 3, "label": "weakest region"}
     ax.errorbar(numbers, estimates, bars, **style).lines[0].set_gid("weakest")
-    known = [event.verdict.estimates[event.verdict.samples > 0] for event in events]
-    means = [mean.mean() if len(mean) else np.nan for mean in known]
+    means = [
+        _mean(event, None if regions is None else regions[i]) for i, event in enumerate(events)
+    ]
     style = {"color": INK, "marker": ".", "linestyle": ":", "gid": "mean"}
     ax.plot(numbers, means, **style, label="all regions together")
     ax.legend(fontsize=8, frameon=False, loc="upper right")
@@ -72,9 +80,18 @@ def draw_progress(ax: Axes, events: Sequence[Round], *, beta: float | None = Non
     ax.spines[["top", "right"]].set_visible(False)
 
 
+def _mean(event: Round, regions: Regions | None) -> float:
+    """Estimate of the failure probability in all regions that have samples."""
+    known = event.verdict.samples > 0
+    if not known.any():
+        return np.nan
+    weights = None if regions is None else regions.shares[known]
+    return float(np.average(event.verdict.estimates[known], weights=weights))
+
+
 def run_figure(
     events: Sequence[Round],
-    regions: GridRegions,
+    regions: Sequence[Regions],
     *,
     scenario: str = "",
     beta: float | None = None,
@@ -83,13 +100,13 @@ def run_figure(
 
     Args:
         events: at least one round, in order.
-        regions: those of the run.
+        regions: those of each round.
         scenario: its name, for the title.
         beta: coverage asked for.
     """
     columns = min(COLUMNS, len(events))
     rows = -(-len(events) // columns)
-    drawn = cells(regions, events[0].verdict.estimates)
+    drawn = cells(regions[0], events[0].verdict.estimates)
     depth, width = drawn.upper.max(axis=0) - drawn.lower.min(axis=0)
     row = float(np.clip(3.4 * depth / max(width, 1e-9), 0.9, 3.4)) + 0.55
     figure = Figure(figsize=(11.0, rows * row + 3.4), layout="constrained")
@@ -102,7 +119,7 @@ def run_figure(
     shown: list[tuple[Round, Sample]] = []
     for i, event in enumerate(events):
         ax = figure.add_subplot(grid[i // columns, i % columns])
-        shown.append((event, draw_heat_map(ax, event, regions, dots=DOTS, text=False)))
+        shown.append((event, draw_heat_map(ax, event, regions[i], dots=DOTS, text=False)))
         count = len(event.demonstrations)
         title = f"round {event.round + 1}: {count} demonstration{'' if count == 1 else 's'}"
         ax.set_title(title, fontsize=9, color=INK)
@@ -110,7 +127,7 @@ def run_figure(
         ax.set_xlabel("")
         ax.set_ylabel("")
     add_colour_bar(figure, figure.add_subplot(grid[:rows, columns]))
-    draw_progress(figure.add_subplot(grid[rows, :]), events, beta=beta)
+    draw_progress(figure.add_subplot(grid[rows, :]), events, regions, beta=beta)
     if scenario:
         figure.suptitle(scenario, fontsize=13, fontweight="bold", color=INK, x=0.01, ha="left")
     seen = {h.get_label(): h for event, s in shown for h in legend_handles(event, s)}
@@ -128,7 +145,7 @@ def run_figure(
 
 def save_run_figure(
     events: Sequence[Round],
-    regions: GridRegions,
+    regions: Sequence[Regions],
     stem: str | Path,
     *,
     scenario: str = "",

@@ -13,7 +13,7 @@ from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.screws.rotations import Array
-from drake_screw.tasks import GridRegions
+from drake_screw.tasks import Regions
 
 
 class Instances(Protocol):
@@ -119,29 +119,29 @@ class Cells:
     """The regions seen from above: cells in x and y of one object.
 
     Where several regions lie above one another (other yaws, other places of other objects) a cell
-    stands for the one with the largest estimate.
+    stands for the one with the largest estimate. It is as small as the smallest of them.
 
     Attributes:
         object: index of the object, the first that has room to move in both x and y.
         lower, upper: (c, 2) x, y of the cells' corners in m.
         region: (c,) the region that each cell stands for.
-        of_region: (K,) the cell that each region lies in.
+        outlines: (K, 2, 2) x, y of the lower and upper corner of each region.
+        stack: how many regions lie above one another, at most.
     """
 
     object: int
     lower: Array
     upper: Array
     region: NDArray[np.int64]
-    of_region: NDArray[np.int64]
-
-    @property
-    def stack(self) -> int:
-        """How many regions lie above one another."""
-        return len(self.of_region) // len(self.region)
+    outlines: Array
+    stack: int
 
 
-def cells(regions: GridRegions, estimates: NDArray[np.float64]) -> Cells:
+def cells(regions: Regions, estimates: NDArray[np.float64]) -> Cells:
     """Project regions onto the table.
+
+    The outlines of two regions must be the same, or apart, or one within the other, and none may
+    be covered but for a part by others within it; those of a grid and of a dyadic tree are so.
 
     Args:
         regions: of the work area.
@@ -149,13 +149,21 @@ def cells(regions: GridRegions, estimates: NDArray[np.float64]) -> Cells:
     """
     room = regions.area.upper - regions.area.lower
     drawn = int((room[:, :2] > 0.0).all(axis=1).argmax())
-    cell = regions.cell(np.arange(regions.K))[:, drawn]
-    of_region = cell[:, 0] + cell[:, 1] * regions.counts[drawn, 0]
-    rising = np.argsort(np.nan_to_num(estimates, nan=-1.0), kind="stable")
-    worst = np.empty(of_region.max() + 1, dtype=np.int64)
-    worst[of_region[rising]] = rising
-    lower, upper = regions.bounds(worst)
-    return Cells(drawn, lower[:, drawn, :2], upper[:, drawn, :2], worst, of_region)
+    outlines = np.stack(regions.bounds(np.arange(regions.K)), axis=1)[:, :, drawn, :2]
+    _, first = np.unique(outlines, axis=0, return_index=True)
+    tiles = outlines[np.sort(first)]
+    tiles = tiles[[np.count_nonzero(_covers(tile, tiles)) == 1 for tile in tiles]]
+    above = np.array([_covers(outlines, tile) for tile in tiles])
+    worst = np.where(above, np.nan_to_num(estimates, nan=-1.0), -2.0).argmax(axis=1)
+    stack = int(above.sum(axis=1).max())
+    return Cells(drawn, tiles[:, 0], tiles[:, 1], worst, outlines, stack)
+
+
+def _covers(outer: Array, inner: Array) -> NDArray[np.bool_]:
+    """Whether rectangles (..., 2, 2) of lower and upper corner cover others (..., 2, 2)."""
+    slack = 1e-9
+    lower = outer[..., 0, :] <= inner[..., 0, :] + slack
+    return np.all(lower & (outer[..., 1, :] >= inner[..., 1, :] - slack), axis=-1)
 
 
 def headline(event: Round) -> str:
@@ -165,6 +173,6 @@ def headline(event: Round) -> str:
     return f"round {event.round + 1}, {count} demonstration{'' if count == 1 else 's'}: {verdict}"
 
 
-def details(event: Round, regions: GridRegions) -> str:
+def details(event: Round, regions: Regions) -> str:
     """The weakest region of a round and the strategy's reason."""
     return f"weakest region: {regions.name(event.verdict.region)}; {event.verdict.reason}"

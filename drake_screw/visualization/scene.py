@@ -11,12 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.colors import to_rgb
 from pydrake.geometry import (
     Meshcat,
     MeshcatVisualizer,
     MeshcatVisualizerParams,
-    Rgba,
 )
 from pydrake.perception import BaseField, Fields, PointCloud
 from pydrake.planning import RobotDiagramBuilder
@@ -26,9 +24,9 @@ from drake_screw.planning import Cause
 from drake_screw.robot import Arm, ObjectConfig, RobotConfig, TableConfig
 from drake_screw.robot.workcell import add_robot, add_table
 from drake_screw.screws.rotations import Array
-from drake_screw.tasks import GridRegions, WorkArea
+from drake_screw.tasks import Regions, WorkArea
 from drake_screw.visualization import meshes
-from drake_screw.visualization.meshes import Mesh
+from drake_screw.visualization.drawing import draw, draw_frames, rgba
 from drake_screw.visualization.page import Slide, slide, with_legend
 from drake_screw.visualization.palette import (
     ACCENT,
@@ -45,7 +43,6 @@ MOST_DOTS = 6_000
 CLAY = "#efeee6"
 HAND = "#3d3a4a"
 SKY = ([0.93, 0.94, 0.96], [0.70, 0.72, 0.76])
-AXES = ("#d81b60", "#2e9e4f", "#1e6fd9")
 
 
 class Scene:
@@ -100,15 +97,14 @@ class Scene:
         self._draw_area()
         self._aim_camera()
 
-    def show_round(self, event: Round, regions: GridRegions) -> Sample:
+    def show_round(self, event: Round, regions: Regions) -> Sample:
         """Draw a finished round in place of the one before.
 
         Returns:
             The instances that were drawn.
         """
         path = _round_path(event.round)
-        for earlier in self._slides:
-            self.meshcat.SetProperty(_round_path(earlier), "visible", False)
+        self._hide_rounds()
         self.meshcat.Delete(path)
         drawn = cells(regions, event.verdict.estimates)
         self._draw_regions(path, drawn, event)
@@ -123,6 +119,32 @@ class Scene:
         self._shown = shown
         return shown
 
+    def show_rates(
+        self,
+        rates: Array,
+        regions: Regions,
+        demonstrations: Sequence[Demonstration],
+    ) -> None:
+        """Draw a round that is still going on in place of the one before.
+
+        Args:
+            rates: (K,) failure rates so far, NaN where there is none.
+            regions: what they are of.
+            demonstrations: in hand.
+        """
+        drawn = cells(regions, rates)
+        if not self.meshcat.HasPath("/progress/regions"):
+            self._hide_rounds()
+            self.meshcat.Delete("/instances")
+            self._draw_demonstrations(demonstrations, drawn)
+        self._draw_tiles("/progress/regions", drawn, rates)
+
+    def show_suggestion(self, x_y_yaw: Array) -> None:
+        """Let the place (k, 3) of a wanted demonstration glow, and no other."""
+        if self._slides:
+            self.meshcat.Delete(f"{_round_path(max(self._slides))}/next")
+        self._draw_suggestion("/progress/next", x_y_yaw)
+
     def save_html(self, path: str | Path) -> Path:
         """Write the scene as one page that needs no network, with a legend.
 
@@ -136,11 +158,16 @@ class Scene:
         path.write_text(page, encoding="utf-8")
         return path
 
+    def _hide_rounds(self) -> None:
+        self.meshcat.Delete("/progress")
+        for earlier in self._slides:
+            self.meshcat.SetProperty(_round_path(earlier), "visible", False)
+
     def _draw_area(self) -> None:
         for item, z in zip(self._area.objects, self._area.z, strict=True):
             lower, upper = np.array(item.lower[:2]) - 0.006, np.array(item.upper[:2]) + 0.006
             outline = meshes.frame(lower, upper, self._above(float(z)), 0.006)
-            _set(self.meshcat, f"/work_area/{item.name}", outline, INK)
+            draw(self.meshcat, f"/work_area/{item.name}", outline, INK)
 
     def _aim_camera(self) -> None:
         lower, upper = self._area.lower[:, :2].min(axis=0), self._area.upper[:, :2].max(axis=0)
@@ -149,26 +176,28 @@ class Scene:
         target = np.array([*(middle * [0.8, 0.45]), z + 0.11 * size])
         self.meshcat.SetCameraPose(target + size * np.array([1.0, -0.15, 0.75]), target)
 
-    def _draw_regions(self, path: str, drawn: Cells, event: Round) -> None:
+    def _draw_tiles(self, path: str, drawn: Cells, rates: Array) -> float:
+        """The regions coloured by failure rates (K,); returns the height they lie at."""
         z = self._above(float(self._area.z[drawn.object]))
         tiles = meshes.rectangles(drawn.lower, drawn.upper, z)
-        color = _vertex_color(failure_color(event.verdict.estimates[drawn.region]))
-        self.meshcat.SetTriangleColorMesh(
-            f"{path}/regions", tiles.vertices.T, tiles.faces.T, np.repeat(color, 4, axis=0).T
-        )
-        weakest = drawn.of_region[event.verdict.region]
-        lower, upper = drawn.lower[weakest], drawn.upper[weakest]
+        color = np.repeat(_vertex_color(failure_color(rates[drawn.region])), 4, axis=0)
+        self.meshcat.SetTriangleColorMesh(path, tiles.vertices.T, tiles.faces.T, color.T)
+        return z
+
+    def _draw_regions(self, path: str, drawn: Cells, event: Round) -> None:
+        z = self._draw_tiles(f"{path}/regions", drawn, event.verdict.estimates)
+        lower, upper = drawn.outlines[event.verdict.region]
         inner = meshes.frame(lower, upper, z + 0.001, 0.014)
         outer = meshes.frame(lower, upper, z + 0.0015, 0.008)
-        _set(self.meshcat, f"{path}/weakest/halo", inner, PAPER)
-        _set(self.meshcat, f"{path}/weakest/line", outer, INK)
+        draw(self.meshcat, f"{path}/weakest/halo", inner, PAPER)
+        draw(self.meshcat, f"{path}/weakest/line", outer, INK)
 
     def _draw_suggestion(self, path: str, x_y_yaw: Array) -> None:
         for item, X_WO in zip(self._objects, self._area.X_WO(x_y_yaw), strict=True):
             bowl = meshes.bowl(item.radius, item.height).moved(X_WO)
             ring = meshes.ring(1.25 * item.radius, 0.008).moved(X_WO)
-            _set(self.meshcat, f"{path}/{item.name}/object", bowl, ACCENT, 0.65)
-            _set(self.meshcat, f"{path}/{item.name}/ring", ring, ACCENT)
+            draw(self.meshcat, f"{path}/{item.name}/object", bowl, ACCENT, 0.65)
+            draw(self.meshcat, f"{path}/{item.name}/ring", ring, ACCENT)
 
     def _draw_demonstrations(self, demonstrations: Sequence[Demonstration], drawn: Cells) -> None:
         self.meshcat.Delete("/demonstrations")
@@ -178,8 +207,9 @@ class Scene:
             hand = _spaced(demonstration.path[:, :3, 3], 0.01)
             if len(hand) > 1:
                 tube = meshes.tube(hand, 0.005 if latest else 0.003)
-                _set(self.meshcat, f"{path}/hand", tube, HAND, 1.0 if latest else 0.6)
-            _draw_triads(self.meshcat, f"{path}/guiding_poses", demonstration)
+                draw(self.meshcat, f"{path}/hand", tube, HAND, 1.0 if latest else 0.6)
+            guides = demonstration.transfer(demonstration.X_WO)
+            draw_frames(self.meshcat, f"{path}/guiding_poses", guides)
             place = demonstration.X_WO[drawn.object, :3, 3]
             lift = self._objects[drawn.object].height if latest else 0.0
             token = np.eye(4)
@@ -188,7 +218,7 @@ class Scene:
         if demonstrations:
             for item, X_WO in zip(self._objects, demonstrations[-1].X_WO, strict=True):
                 bowl = meshes.bowl(item.radius, item.height).moved(X_WO)
-                _set(self.meshcat, f"/objects/{item.name}", bowl, CLAY)
+                draw(self.meshcat, f"/objects/{item.name}", bowl, CLAY)
 
     def _draw_instances(self, shown: Sample, drawn: Cells) -> None:
         self.meshcat.Delete("/instances")
@@ -201,7 +231,7 @@ class Scene:
             cloud.mutable_xyzs()[:] = np.column_stack([x_y, np.full(len(x_y), z)]).T
             size = 0.003 if cause == Cause.SUCCESS else 0.006
             path = f"/instances/{name}"
-            self.meshcat.SetObject(path, cloud, size, _rgba(OUTCOME_COLORS[cause]))
+            self.meshcat.SetObject(path, cloud, size, rgba(OUTCOME_COLORS[cause]))
 
     def _above(self, z: float) -> float:
         """Just above the table, so that what lies flat at height z is not inside of it."""
@@ -229,19 +259,11 @@ def _draw_workcell(meshcat: Meshcat, robot: RobotConfig, table: TableConfig | No
     diagram.ForcedPublish(context)
 
 
-def _draw_triads(meshcat: Meshcat, path: str, demonstration: Demonstration) -> None:
-    X_WE = demonstration.transfer(demonstration.X_WO)
-    for axis, color in enumerate(AXES):
-        arms = [meshes.tube([X[:3, 3], X[:3, 3] + 0.035 * X[:3, axis]], 0.005) for X in X_WE]
-        if arms:
-            _set(meshcat, f"{path}/{'xyz'[axis]}", meshes.join(arms), color)
-
-
 def _draw_token(meshcat: Meshcat, path: str, number: int, X_WT: Array) -> None:
-    _set(meshcat, f"{path}/rim", meshes.disc(0.030, 0.003).moved(X_WT), INK)
-    _set(meshcat, f"{path}/token", meshes.disc(0.027, 0.004).moved(X_WT), PAPER)
+    draw(meshcat, f"{path}/rim", meshes.disc(0.030, 0.003).moved(X_WT), INK)
+    draw(meshcat, f"{path}/token", meshes.disc(0.027, 0.004).moved(X_WT), PAPER)
     X_TN = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0.005], [0, 0, 0, 1.0]])
-    _set(meshcat, f"{path}/number", meshes.number(number, 0.026).moved(X_WT @ X_TN), INK)
+    draw(meshcat, f"{path}/number", meshes.number(number, 0.026).moved(X_WT @ X_TN), INK)
 
 
 def _spaced(path: Array, spacing: float) -> Array:
@@ -259,11 +281,3 @@ def _vertex_color(rgb: Array) -> Array:
     """
     linear = linear_from_srgb(rgb)
     return linear * (0.7 + 0.3 * linear)
-
-
-def _set(meshcat: Meshcat, path: str, mesh: Mesh, color: str, opacity: float = 1.0) -> None:
-    meshcat.SetTriangleMesh(path, mesh.vertices.T, mesh.faces.T, _rgba(color, opacity))
-
-
-def _rgba(color: str, opacity: float = 1.0) -> Rgba:
-    return Rgba(*to_rgb(color), opacity)

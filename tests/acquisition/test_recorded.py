@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import RecordedTeacher, Suggestion
+from drake_screw.tasks import grid_regions
 
 from .conftest import Disks, recording_at
 
@@ -48,3 +49,12 @@ def test_it_says_when_it_has_none_left(teacher):
     lesson = ask(teacher, 0.5, 0.2, used=LIBRARY)
     assert lesson.recording is None
     assert lesson.remark == "all 3 recordings are used"
+
+
+def test_a_request_may_bring_its_own_regions(teacher):
+    place = np.array([[0.51, 0.2, 0.0]])
+    whole = grid_regions(teacher.regions.area, {})
+    suggestion = Suggestion(0, place, regions=whole)
+    lesson = teacher.demonstrate(suggestion, number=0, used=(), rng=np.random.default_rng(0))
+    assert lesson.recording.name == "elsewhere"
+    assert "nearest unused recording of region 0" in lesson.remark

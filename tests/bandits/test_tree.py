@@ -1,12 +1,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from bernoulli import GOAL, at_most_plausible
 
-from drake_screw.bandits import BanditError, Cell, CellPull, CertifyOrSplit, TreeVerdict
+from drake_screw.bandits import (
+    BanditError,
+    Cell,
+    CellPull,
+    CertifyOrSplit,
+    TreeVerdict,
+    cell_number,
+)
 
 SMALLEST = 1 / 256
 Rate = Callable[[np.ndarray], np.ndarray]  # points (n, d) -> their failure probabilities (n,)
@@ -144,6 +152,27 @@ def test_halves_cut_the_axes_in_turn() -> None:
     lower, upper = right.halves()
     np.testing.assert_array_equal([lower.lower, lower.upper], [[0.5, 0], [1, 0.5]])
     np.testing.assert_array_equal(upper.points, points[2:])
+
+
+@pytest.mark.parametrize("d", [1, 2, 5])
+def test_cells_are_numbered_as_in_a_heap(d: int) -> None:
+    empty = np.zeros((0, d)), np.zeros(0, bool)
+    row, expected = [Cell(np.zeros(d), np.ones(d), 0, 1, *empty)], 1
+    for _ in range(6):
+        for cell in row:
+            assert cell_number(cell.lower, cell.upper) == expected
+            expected += 1
+        row = [half for cell in row for half in cell.halves()]
+
+
+def test_bounds_widen_with_depth_and_epoch() -> None:
+    tree = CertifyOrSplit(GOAL, 2, SMALLEST, 0.5)
+    points, failed = np.zeros((40, 2)), np.arange(40) < 4
+    whole = Cell(np.zeros(2), np.ones(2), 0, 1, points, failed)
+    ends = [tree.bounds(replace(whole, depth=d, epoch=e)) for d, e in [(0, 1), (0, 2), (3, 2)]]
+    assert ends == sorted(ends, reverse=True)
+    assert [high for _, high in ends] == sorted(high for _, high in ends)
+    assert tree.bounds(replace(whole, points=points[:0], failed=failed[:0])) == (0.0, 1.0)
 
 
 def test_same_answers_give_the_same_verdict() -> None:

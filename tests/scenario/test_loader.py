@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
 from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.scenario.schema import (
     AXES,
+    AdaptiveBlock,
     CoverageBlock,
     DemonstrationsBlock,
     Interval,
@@ -504,6 +506,10 @@ def scenarios(draw: st.DrawFn) -> Scenario:
     free = [f"{o.name}.{axis}" for o in objects for axis in AXES if not getattr(o, axis).fixed]
     beta = draw(st.floats(min_value=0.01, max_value=0.99))
     options = st.booleans() | st.integers() | numbers | texts
+    regions = RegionsBlock(grid={k: draw(st.integers(1, 9)) for k in free})
+    if free and draw(st.booleans()):
+        shares = st.floats(min_value=1e-9, max_value=1.0, exclude_max=True)
+        regions = RegionsBlock(adaptive=AdaptiveBlock(smallest=draw(shares), level=draw(shares)))
     return Scenario(
         name=draw(names),
         description=draw(texts),
@@ -525,11 +531,13 @@ def scenarios(draw: st.DrawFn) -> Scenario:
             )
         ),
         objects=objects,
-        regions=RegionsBlock(grid={k: draw(st.integers(1, 9)) for k in free}),
+        regions=regions,
         coverage=CoverageBlock(
             beta=beta,
             epsilon=draw(st.floats(min_value=1e-9, max_value=0.9)) * (1 - beta),
-            options=draw(st.dictionaries(texts, options, max_size=3)),
+            options=draw(st.dictionaries(texts, options, max_size=3))
+            if regions.adaptive is None
+            else {},
         ),
         demonstrations=DemonstrationsBlock(
             initial=draw(st.integers(0, 3) | st.just((Path("/a b"), Path("/c: #d")))), budget=3
@@ -544,6 +552,16 @@ def scenarios(draw: st.DrawFn) -> Scenario:
         ),
         seed=draw(st.integers(0, 2**128)),
     )
+
+
+def test_line_breaks_of_unicode_are_read_back(write: Callable[..., Path], tmp_path: Path) -> None:
+    options = {"a\x85b": True, "\u2028": "\u2029 \n", "é": "ö"}
+    scenario = load_scenario(write())
+    scenario = replace(scenario, coverage=replace(scenario.coverage, options=options))
+    file = tmp_path / "written.yaml"
+    file.write_text(dump_scenario(scenario), encoding="utf-8", newline="")
+    assert load_scenario(file).coverage.options == options
+    assert "é" in file.read_text(encoding="utf-8")
 
 
 @settings(max_examples=40, deadline=None)

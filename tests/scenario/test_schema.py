@@ -13,6 +13,7 @@ import pytest
 from drake_screw.scenario.checks import find_problems
 from drake_screw.scenario.schema import (
     STRATEGIES,
+    AdaptiveBlock,
     CoverageBlock,
     DemonstrationsBlock,
     Interval,
@@ -49,7 +50,7 @@ def blocks(block: type) -> Iterator[type]:
 
 def test_every_key_is_described_and_every_block_frozen() -> None:
     found = list(blocks(Scenario))
-    assert len(found) == 10
+    assert len(found) == 11
     for block in found:
         for item in fields(block):
             if item.name == "source":
@@ -73,6 +74,11 @@ def test_cells_are_per_object_and_axis() -> None:
     assert two.cells == ((2, 1, 1), (1, 1, 5))
 
 
+def test_adaptive_regions_start_as_one() -> None:
+    assert find_problems(adaptive()) == ()
+    assert adaptive().cells == ((1, 1, 1),)
+
+
 def test_source_does_not_take_part_in_comparison() -> None:
     assert replace(GOOD, source=Path("/somewhere.yaml")) == GOOD
 
@@ -83,6 +89,10 @@ def with_block(name: str, **values: Any) -> Scenario:
 
 def with_object(**values: Any) -> Scenario:
     return replace(GOOD, objects=(replace(BOWL, **values),))
+
+
+def adaptive(**values: Any) -> Scenario:
+    return replace(GOOD, regions=RegionsBlock(adaptive=AdaptiveBlock(**values)))
 
 
 @pytest.mark.parametrize(
@@ -128,6 +138,28 @@ def with_object(**values: Any) -> Scenario:
             "regions.grid.x",
             "'x' is an axis of every object",
             "Axes: bowl.x, bowl.y, bowl.yaw, cup.x",
+        ),
+        (with_block("regions", grid=None), "regions", "grid or adaptive, found neither", "{x: 4"),
+        (
+            with_block("regions", adaptive=AdaptiveBlock()),
+            "regions",
+            "found grid and adaptive",
+            "`adaptive: {}`",
+        ),
+        (adaptive(smallest=1.0), "regions.adaptive.smallest", "below 1, found 1.0", "share"),
+        (adaptive(smallest=1e-10), "regions.adaptive.smallest", "of at least 1e-09", ""),
+        (adaptive(level=0.0), "regions.adaptive.level", "above 0 and below 1", "noticed"),
+        (
+            replace(adaptive(), objects=(replace(BOWL, x=Interval(1, 1)),)),
+            "regions.adaptive",
+            "nothing to split",
+            "range",
+        ),
+        (
+            replace(adaptive(), coverage=CoverageBlock(options={"spend": False})),
+            "coverage.options",
+            "strategy of their own",
+            "regions.adaptive",
         ),
         (with_block("coverage", beta=1.0), "coverage.beta", "above 0 and below 1, found 1.0", ""),
         (with_block("coverage", delta=0.0), "coverage.delta", "above 0 and below 1", "confidence"),
