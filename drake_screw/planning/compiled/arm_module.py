@@ -17,37 +17,30 @@ from types import ModuleType
 import numba
 
 from drake_screw.planning import contract, outcomes
-from drake_screw.planning.compiled import code_hints, crossing, lanes, rows, step_code
+from drake_screw.planning.compiled import crossing, lanes, lowering, rows, step_code
 from drake_screw.planning.compiled.link_frames import LinkFrames
 
-_SOURCES = (code_hints, contract, crossing, lanes, outcomes, rows)
+_SOURCES = (contract, crossing, lanes, lowering, outcomes, rows)
 """Modules that are compiled into that of an arm."""
 
 _MODULE = '''"""Plans of one arm, {lanes} at a time; written by drake_screw.planning.compiled."""
 
-from math import sqrt
+from numba import njit
 
-import numpy as np
-from numba import njit, uintp
-from numpy import ceil, floor
-
-from drake_screw.planning.compiled.code_hints import lane_function
 from drake_screw.planning.compiled.lanes import begin_plan, next_unit, save_start, settle
-
-lane_code = njit(error_model="numpy", fastmath={{"contract", "reassoc", "nsz", "arcp"}})
+from drake_screw.planning.compiled.lowering import lane_code
 
 
 {functions}
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def prepare(b, rows, q_start, start):
-    """Fills start, (M, s), with what `arrive` says of the start configurations (M, n)."""
-    for m in range(len(q_start)):
-        for j in range(q_start.shape[1]):
-            for i in range({lanes}):
-                b[(rows.q_stage + j) * {lanes} + i] = q_start[m, j]
-        arrive(b)
-        save_start(b, 0, rows, start, m)
+    """Fills start with what `arrive` says of the start configuration (n,)."""
+    for j in range(len(q_start)):
+        for i in range({lanes}):
+            b[(rows.q_stage + j) * {lanes} + i] = q_start[j]
+    arrive(b)
+    save_start(b, 0, rows, start)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -84,11 +77,7 @@ def source(
 
 def load(text: str) -> ModuleType:
     """The module of this source text, from the cache if it was ever loaded before."""
-    parts = [
-        text,
-        numba.__version__,
-        *(Path(m.__file__ or "").read_text() for m in _SOURCES),
-    ]
+    parts = [text, numba.__version__, *(Path(m.__file__ or "").read_text() for m in _SOURCES)]
     name = "arm_" + hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
     if name in sys.modules:
         return sys.modules[name]
