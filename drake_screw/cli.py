@@ -39,6 +39,32 @@ ModelOption = Annotated[
 ]
 
 
+DemonstrationsOption = Annotated[
+    Path | None,
+    typer.Option(metavar="DIR", help="Ask this folder of recordings, not a simulated teacher."),
+]
+SeedOption = Annotated[int | None, typer.Option(help="Seed of all random draws.")]
+RunArgument = Annotated[Path, typer.Argument(metavar="RUN", help="A run's directory.")]
+InstanceOption = Annotated[
+    tuple[float, float] | None,
+    typer.Option(metavar="X Y", help="Just this place of the object, in m."),
+]
+
+
+def _given(scenario: str | None) -> str:
+    if scenario is None:
+        raise DrakeScrewError("no scenario", remedy="Give one, as in: drake-screw run pouring")
+    return scenario
+
+
+def _changes(changes: list[str] | None, seed: int | None, demonstrations: Path | None) -> list[str]:
+    all_changes = [*(changes or []), *([f"seed={seed}"] if seed is not None else [])]
+    if demonstrations is not None:
+        folder = demonstrations.resolve()
+        all_changes += ["teacher={kind: recorded}", f"teacher.folder={folder}"]
+    return all_changes
+
+
 def _load(scenario: str, changes: list[str] | None, model: Path | None) -> Scenario:
     from drake_screw.scenario.loader import load_scenario
 
@@ -64,12 +90,9 @@ def run(
         str | None,
         typer.Argument(metavar="SCENARIO", help="A shipped scenario's name, or a YAML file."),
     ] = None,
-    demonstrations: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Ask this folder of recordings, not a simulated teacher."),
-    ] = None,
+    demonstrations: DemonstrationsOption = None,
     model: ModelOption = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of all random draws.")] = None,
+    seed: SeedOption = None,
     output: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="The run directory. Default: runs/SCENARIO/TIME."),
@@ -78,6 +101,9 @@ def run(
         Path | None, typer.Option(metavar="RUN", help="Carry an interrupted run on.")
     ] = None,
     set_: SetOption = None,
+    meshcat: Annotated[
+        bool, typer.Option("--meshcat", help="Show the run in the browser as it goes on.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print just the end.")] = False,
 ) -> None:
     """Acquire demonstrations until every region is covered, and certify it.
@@ -97,18 +123,17 @@ def run(
                 remedy="Give just: drake-screw run --resume RUN",
             )
         job = resumable(open_run(resume))
-    elif scenario is None:
-        raise DrakeScrewError(
-            "no scenario", remedy="Give a scenario, as in: drake-screw run pouring"
-        )
     else:
-        changes = [*(set_ or []), *([f"seed={seed}"] if seed is not None else [])]
-        if demonstrations is not None:
-            folder = demonstrations.resolve()
-            changes += ["teacher={kind: recorded}", f"teacher.folder={folder}"]
-        job = new_run(_load(scenario, changes, model), output)
+        loaded = _load(_given(scenario), _changes(set_, seed, demonstrations), model)
+        job = new_run(loaded, output)
+    view = None
+    if meshcat:
+        from drake_screw.scenario.live import LiveView
+
+        view = LiveView(job.setup)
+        console.print(f"watch it at {view.url}", soft_wrap=True)
     try:
-        finished = show(job, console, quiet=quiet)
+        finished = show(job, console, quiet=quiet, view=view)
     except KeyboardInterrupt:
         command = f"drake-screw run --resume {job.directory.path}"
         console.print(f"interrupted; carry on with: {command}", soft_wrap=True)
@@ -153,7 +178,7 @@ def check(scenario: ScenarioArgument, model: ModelOption = None, set_: SetOption
 
 @app.command(epilog="Example:  drake-screw report runs/pouring/2026-11-22_10-15-00")
 def report(
-    run: Annotated[Path, typer.Argument(metavar="RUN", help="A finished run's directory.")],
+    run: RunArgument,
 ) -> None:
     """Tell a finished run again, and draw its pictures anew."""
     from drake_screw.scenario.console import tell
@@ -162,6 +187,117 @@ def report(
     job, console = open_run(run), Console()
     tell(job, job.replay(), console)
     redraw(job)
+
+
+@app.command(epilog="Example:  drake-screw study pouring --regions 1,4,16 --runs 200")
+def study(
+    scenario: Annotated[
+        str | None,
+        typer.Argument(metavar="SCENARIO", help="A shipped scenario's name, or a YAML file."),
+    ] = None,
+    regions: Annotated[
+        str, typer.Option(metavar="K,K,...", help="Numbers of regions to compare.")
+    ] = "1,2,4,8,16",
+    runs: Annotated[int, typer.Option(help="Runs for each number of regions.", min=1)] = 1000,
+    demonstrations: DemonstrationsOption = None,
+    model: ModelOption = None,
+    seed: SeedOption = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="The study directory. Default: studies/SCENARIO/TIME."),
+    ] = None,
+    resume: Annotated[
+        Path | None, typer.Option(metavar="STUDY", help="Carry an interrupted study on.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes. Default: all processors.")] = None,
+    set_: SetOption = None,
+) -> None:
+    """Measure how many demonstrations a certificate takes, by number of regions.
+
+    Every run has fresh samples and a random first demonstration.
+    """
+    from drake_screw.scenario.study import new_study, numbers_of_regions, open_study
+    from drake_screw.scenario.study_console import show_study
+
+    console = Console()
+    if resume is not None:
+        if any(v is not None for v in (scenario, demonstrations, model, seed, output, set_)):
+            raise DrakeScrewError(
+                "--resume goes alone: a study is carried on as it was begun",
+                remedy="Give just: drake-screw study --resume STUDY",
+            )
+        job = open_study(resume)
+    else:
+        loaded = _load(_given(scenario), _changes(set_, seed, demonstrations), model)
+        job = new_study(loaded, numbers_of_regions(regions), runs, output)
+    try:
+        show_study(job, console, workers=workers)
+    except KeyboardInterrupt:
+        command = f"drake-screw study --resume {job.path}"
+        console.print(f"interrupted; carry on with: {command}", soft_wrap=True)
+        raise typer.Exit(130) from None
+
+
+@app.command(epilog="Example:  drake-screw inspect runs/pouring/TIME --html failing.html")
+def inspect(
+    run: RunArgument,
+    round: Annotated[int | None, typer.Option(help="Round, from 1. Default: the last.")] = None,
+    instance: Annotated[
+        int | None, typer.Option(help="Row of the round's instances, from 0. Default: suggested.")
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a page instead of serving one.")
+    ] = None,
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "localhost",
+    port: Annotated[int | None, typer.Option(help="Port of Meshcat. Default: a free one.")] = None,
+) -> None:
+    """See why an instance fails: in the terminal, in Meshcat, or on a page of its own."""
+    from drake_screw.scenario.inspect import inspect as carry_out
+
+    carry_out(run, Console(), round=round, instance=instance, html=html, host=host, port=port)
+
+
+@app.command(epilog="Example:  drake-screw execute runs/pouring/TIME --per-region 1")
+def execute(
+    run: RunArgument,
+    per_region: Annotated[int, typer.Option(help="Instances to draw in every region.", min=1)] = 2,
+    instance: InstanceOption = None,
+    graphviz: Annotated[
+        bool, typer.Option("--graphviz", help="Print the simulated diagram for dot, and stop.")
+    ] = False,
+    workers: Annotated[int | None, typer.Option(help="Processes. Default: all processors.")] = None,
+) -> None:
+    """Simulate plans of a run with dynamics, and check what the robot does.
+
+    Reports joint limits, velocities, tracking, deviation from the screws and contacts; writes a
+    table and a recording that plays in the browser.
+    """
+    from drake_screw.scenario.execute import execute as carry_out
+    from drake_screw.scenario.execute import station_graphviz
+
+    if graphviz:
+        print(station_graphviz(run))
+        return
+
+    text = carry_out(run, per_region=per_region, instance=instance, workers=workers)
+    Console().print(text, highlight=False)
+
+
+@app.command(
+    epilog="Example:  drake-screw export runs/pouring/TIME --instance 0.9 0.3 --output plan.csv"
+)
+def export(
+    run: RunArgument,
+    instance: Annotated[
+        tuple[float, float], typer.Option(metavar="X Y", help="Where the object stands, in m.")
+    ],
+    output: Annotated[Path, typer.Option(metavar="FILE", help="Where to write the trajectory.")],
+    format: Annotated[str, typer.Option(help="baxter-csv, ros-trajectory or npz.")] = "baxter-csv",
+) -> None:
+    """Write a plan as a trajectory that the robot can play."""
+    from drake_screw.scenario.export import export as carry_out
+
+    Console().print(carry_out(run, instance, format, output), highlight=False)
 
 
 def main() -> None:

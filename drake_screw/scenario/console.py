@@ -21,20 +21,25 @@ from drake_screw.acquisition import (
     Status,
 )
 from drake_screw.bandits import Verdict
+from drake_screw.scenario.certificate import certificate, statement
+from drake_screw.scenario.live import LiveView
 from drake_screw.scenario.narration import describe
-from drake_screw.scenario.runner import Run, certificate
-from drake_screw.tasks import GridRegions
+from drake_screw.scenario.runner import Run
+from drake_screw.tasks import Regions
 
 _ROWS = 24
 
 
-def show(run: Run, console: Console, *, quiet: bool = False) -> Finished:
+def show(
+    run: Run, console: Console, *, quiet: bool = False, view: LiveView | None = None
+) -> Finished:
     """Carry a run out, showing its events as they happen.
 
     Args:
         run: new or resumed.
         console: to write to; a live display only where it is a terminal.
         quiet: nothing but the certificate.
+        view: hears of everything, too.
 
     Returns:
         The run's last event.
@@ -51,19 +56,24 @@ def show(run: Run, console: Console, *, quiet: bool = False) -> Finished:
         def progress(event: RegionsEvaluated) -> None:
             rates = event.failures / np.maximum(event.samples, 1)
             worst = int(np.argmax(rates))
-            detail = (
-                f"{event.samples.sum():>9,} instances, highest failure rate "
-                f"{rates[worst]:6.2%} in region {worst}"
-            )
+            detail = f"{event.samples.sum():>9,} instances, "
+            if len(rates) == 1:
+                detail += f"{event.failures[0]:,} failures"
+            else:
+                detail += f"highest failure rate {rates[worst]:6.2%} in region {worst}"
             live.update(task, detail=detail)
+            if view is not None:
+                view.progress(event)
 
         for event in run.events(progress):
+            if view is not None:
+                view.hear(event)
             if isinstance(event, RoundStarted):
                 live.update(task, description=describe(event, regions), detail="")
             elif not quiet and not isinstance(event, Finished):
                 live.console.print(Text(describe(event, regions)))
             if isinstance(event, RoundFinished) and not quiet:
-                live.console.print(round_table(event.verdict, regions))
+                live.console.print(round_table(event.verdict, event.regions))
             finished = event
         live.update(task, visible=False)
     assert isinstance(finished, Finished)
@@ -79,25 +89,16 @@ def tell(run: Run, events: Iterable[Event], console: Console) -> None:
         elif not isinstance(event, RoundStarted):
             console.print(Text(describe(event, run.setup.regions)))
             if isinstance(event, RoundFinished):
-                console.print(round_table(event.verdict, run.setup.regions))
+                console.print(round_table(event.verdict, event.regions))
 
 
 def show_certificate(run: Run, finished: Finished, console: Console) -> None:
     """The statement a finished run makes, and where to find the rest."""
-    stated = certificate(run.setup, finished)
+    stated = certificate(run.setup, finished, run.directory.record["rounds"])
     certified = finished.status is Status.CERTIFIED
-    lines = [f"{finished.reason}."] if not certified else []
-    if "claim" in stated:
-        lines.append(f"{stated['claim']}.")
-        lines.append(
-            f"{stated['demonstrations']} demonstrations, {stated['regions']} regions, strategy "
-            f"{stated['strategy']}, {stated['fresh_instances']:,} fresh instances in the last round"
-        )
-        if not certified:
-            lines.append(f"coverage shown so far: {stated['coverage']:.4f} of every region")
     console.print(
         Panel(
-            Text("\n".join(lines)),
+            Text("\n".join(statement(stated, finished.reason))),
             title="certificate" if certified else "no certificate",
             border_style="green" if certified else "yellow",
             title_align="left",
@@ -106,7 +107,7 @@ def show_certificate(run: Run, finished: Finished, console: Console) -> None:
     console.print(Text(f"run directory: {run.directory.path}"), soft_wrap=True)
 
 
-def round_table(verdict: Verdict, regions: GridRegions) -> Table:
+def round_table(verdict: Verdict, regions: Regions) -> Table:
     """Regions of a round with their counts; with many regions, the worst of them."""
     shown = np.arange(regions.K)
     title = None

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_screw.acquisition.events import Evaluation, RoundFinished, Suggestion
 from drake_screw.bandits import Verdict
@@ -17,6 +18,11 @@ from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, draw, grid_regi
 BOWL = ObjectArea("bowl", (0.6, -0.3, 0.0), (1.0, 0.9, 0.0), 0.1)
 
 MakeRound = Callable[..., RoundFinished]
+
+
+@pytest.fixture(scope="module")
+def meshcat() -> Meshcat:
+    return Meshcat(MeshcatParams(host="localhost"))
 
 
 @pytest.fixture
@@ -76,6 +82,7 @@ def make_round() -> MakeRound:
             Evaluation(x_y_yaw, region, _outcomes(np.tile(cause[:, None], max(demonstrations, 1)))),
             verdict,
             suggestion,
+            regions,
         )
 
     return make

@@ -11,9 +11,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from drake_screw.planning import Cause
-from drake_screw.tasks import ObjectArea, WorkArea, grid_regions
+from drake_screw.tasks import ObjectArea, WorkArea, box_regions, grid_regions
 from drake_screw.visualization import draw_heat_map, heat_map_figure, save_heat_map
 from drake_screw.visualization.palette import UNKNOWN, failure_color
+from tests.visualization.conftest import BOWL
 
 FAILURES = [0, 3, 10, 5, 0, 1]
 
@@ -170,6 +171,31 @@ def test_stacks_and_the_drawn_object_are_stated(make_round) -> None:
     assert any("worst of 2 regions; places of bowl" in " ".join(t.split()) for t in texts(ax))
     assert {"0.800", "0.200"} <= set(texts(ax))
     assert "0.100" not in texts(ax)
+
+
+def test_cells_of_different_sizes_are_drawn_as_they_are(ax, make_round, regions) -> None:
+    boxes = box_regions(regions.area, [[0, 0], [0.5, 0], [0.5, 0.5]], [[0.5, 1], [1, 0.5], [1, 1]])
+    draw_heat_map(ax, make_round(boxes, [0, 4, 9], demonstrations=0), boxes, dots=0, text=False)
+    for place, failures in [((0.7, -0.2), 0), ((0.7, 0.8), 0), ((0.9, 0.0), 4), ((0.9, 0.6), 9)]:
+        np.testing.assert_allclose(color_at(ax, *place), failure_color(failures / 10), atol=0.01)
+    (frame,) = [p for p in ax.patches if p.get_gid() == "weakest"]
+    np.testing.assert_allclose(frame.get_xy(), (0.3, 0.8))
+    np.testing.assert_allclose((frame.get_width(), frame.get_height()), (0.6, 0.2))
+
+
+def test_a_weakest_region_larger_than_the_cells_is_framed_whole(ax, make_round) -> None:
+    cup = ObjectArea("cup", (0.2, 0.0, 0.0), (0.4, 0.0, 0.0), 0.0)
+    area = WorkArea((BOWL, cup))
+    boxes = box_regions(
+        area,
+        [[0, 0, 0.5], [0, 0, 0], [0.5, 0, 0]],
+        [[1, 1, 1], [0.5, 1, 0.5], [1, 1, 0.5]],
+    )
+    figure = heat_map_figure(make_round(boxes, [6, 1, 9]), boxes)
+    assert any("worst of up to 2 regions" in " ".join(t.split()) for t in texts(figure.axes[0]))
+    draw_heat_map(ax, make_round(boxes, [6, 1, 0]), boxes, dots=0)
+    (frame,) = [p for p in ax.patches if p.get_gid() == "weakest"]
+    np.testing.assert_allclose((frame.get_width(), frame.get_height()), (1.2, 0.4))
 
 
 def test_files_are_the_same_every_time(tmp_path, make_round, regions) -> None:

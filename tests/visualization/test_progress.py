@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from drake_screw.tasks import box_regions
 from drake_screw.visualization import draw_progress, run_figure, save_run_figure
 
 
@@ -36,14 +37,24 @@ def test_regions_without_samples_do_not_count(make_round, regions) -> None:
     np.testing.assert_allclose(line(ax, "mean"), [[1, 0.3]])
 
 
+def test_larger_regions_weigh_more(make_round, regions) -> None:
+    boxes = box_regions(regions.area, [[0, 0], [0.5, 0], [0.5, 0.5]], [[0.5, 1], [1, 0.5], [1, 1]])
+    ax = Figure().add_subplot()
+    draw_progress(ax, [make_round(boxes, [2, 4, 8])], [boxes])
+    np.testing.assert_allclose(line(ax, "mean"), [[1, 0.4]])
+    ax = Figure().add_subplot()
+    draw_progress(ax, [make_round(boxes, [2, 4, 0], samples=[10, 10, 0])], [boxes])
+    np.testing.assert_allclose(line(ax, "mean"), [[1, 0.8 / 3]])
+
+
 def test_every_round_has_its_heat_map(events, regions) -> None:
-    figure = run_figure(events, regions, scenario="pouring", beta=0.95)
+    figure = run_figure(events, [regions] * 4, scenario="pouring", beta=0.95)
     titles = [ax.get_title() for ax in figure.axes if ax.get_title()]
     assert titles == [f"round {i}: {i} demonstration{'s' * (i > 1)}" for i in range(1, 5)]
 
 
 def test_one_round_is_enough(tmp_path, events, regions) -> None:
-    files = save_run_figure(events[:1], regions, tmp_path / "run")
-    again = save_run_figure(events[:1], regions, tmp_path / "again")
+    files = save_run_figure(events[:1], [regions], tmp_path / "run")
+    again = save_run_figure(events[:1], [regions], tmp_path / "again")
     for one, other in zip(files, again, strict=True):
         assert one.read_bytes() == other.read_bytes()

@@ -1,9 +1,11 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from drake_screw.bandits import Cell
 from drake_screw.planning import Cause, Outcomes
-from drake_screw.tasks import ObjectArea, WorkArea, grid_regions
+from drake_screw.tasks import BoxRegions, ObjectArea, WorkArea, box_regions, grid_regions
 from drake_screw.visualization.rounds import cells, details, headline, instance_causes, sample
 
 from .conftest import BOWL
@@ -68,7 +70,8 @@ def test_a_stack_shows_its_worst_region() -> None:
     drawn = cells(regions, np.array([0.1, 0.9, 0.5, np.nan, 0.2, 0.3]))
     assert drawn.stack == 3
     assert drawn.region.tolist() == [2, 1]
-    assert drawn.of_region.tolist() == [0, 1, 0, 1, 0, 1]
+    np.testing.assert_allclose(drawn.lower, drawn.outlines[:2, 0])
+    np.testing.assert_allclose(drawn.outlines, np.tile(drawn.outlines[:2], (3, 1, 1)))
 
 
 def test_the_first_object_that_can_move_is_drawn() -> None:
@@ -77,6 +80,45 @@ def test_the_first_object_that_can_move_is_drawn() -> None:
     drawn = cells(regions, np.zeros(2))
     assert drawn.object == 1
     np.testing.assert_allclose(drawn.lower, [[0.6, -0.3], [0.8, -0.3]])
+
+
+def refined(area: WorkArea, d: int, seed: int) -> BoxRegions:
+    """A frontier of the tree, split at random."""
+    rng = np.random.default_rng(seed)
+    frontier = [Cell(np.zeros(d), np.ones(d), 0, 1, np.zeros((0, d)), np.zeros(0, bool))]
+    for _ in range(40):
+        frontier += frontier.pop(rng.integers(len(frontier))).halves()
+    return box_regions(area, [c.lower for c in frontier], [c.upper for c in frontier])
+
+
+def test_cells_of_different_sizes_are_their_own() -> None:
+    regions = refined(WorkArea((BOWL,)), 2, seed=0)
+    drawn = cells(regions, np.zeros(regions.K))
+    assert drawn.stack == 1
+    np.testing.assert_array_equal(drawn.region, np.arange(regions.K))
+    np.testing.assert_array_equal(np.stack([drawn.lower, drawn.upper], axis=1), drawn.outlines)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_every_place_shows_the_worst_region_above_it(seed: int) -> None:
+    cup = ObjectArea("cup", (0.2, 0.0, -1.0), (0.4, 0.0, 1.0), 0.0)
+    area = WorkArea((BOWL, cup))
+    regions = refined(area, 4, seed)
+    rng = np.random.default_rng(seed)
+    estimates = np.where(rng.random(regions.K) < 0.2, np.nan, rng.random(regions.K))
+    drawn = cells(regions, estimates)
+    stacks = []
+    for place in rng.uniform(area.lower[0, :2], area.upper[0, :2], (200, 2)):
+        inside = ((drawn.lower <= place) & (place < drawn.upper)).all(axis=1)
+        assert inside.sum() == 1, "the cells tile the work area"
+        above = ((regions.lower[:, 0, :2] <= place) & (place < regions.upper[:, 0, :2])).all(axis=1)
+        shown = drawn.region[inside.argmax()]
+        assert above[shown]
+        known = estimates[above]
+        worst = known[~np.isnan(known)].max(initial=-1.0)
+        assert np.isnan(known).all() or estimates[shown] == worst
+        stacks.append(above.sum())
+    assert max(stacks) <= drawn.stack
 
 
 def test_a_round_in_words(make_round, regions) -> None:

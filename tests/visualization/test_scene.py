@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from pydrake.geometry import Meshcat, MeshcatParams
+from pydrake.geometry import Meshcat
 
 from drake_screw.errors import ModelError
 from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
@@ -17,11 +17,6 @@ ARM = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w
 BAXTER = RobotConfig("baxter", ARM, "left_hand", (0.0, -0.5, 0.0, 1.0, 0.0, 0.5, 0.0))
 TABLE = TableConfig((0.8, 0.3), (0.6, 1.4), 0.1)
 FAILURES = [0, 3, 10, 5, 0, 1]
-
-
-@pytest.fixture(scope="module")
-def meshcat() -> Meshcat:
-    return Meshcat(MeshcatParams(host="localhost"))
 
 
 @pytest.fixture

@@ -1,0 +1,196 @@
+"""One demonstration tried at one task instance: its plan, its screws, and what to say of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from drake_screw.demonstrations import Demonstration
+from drake_screw.planning import Cause, Outcomes, Plan, ReferencePlanner
+from drake_screw.robot import Arm
+from drake_screw.screws import Screw, screw_between
+from drake_screw.screws.rotations import Array
+
+DONE, FAILED, AHEAD = "done", "failed", "never reached"
+FAR_AXIS = 1.0
+"""m. A screw whose axis lies farther from the hand than this looks straight."""
+STRAIGHT = 0.02
+"""rad. A screw that turns less than this looks straight, too."""
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """A demonstration carried over to an instance, planned, and looked at.
+
+    Attributes:
+        arm: that was planned for.
+        number: of the demonstration, from 0.
+        demonstration: what was carried over.
+        X_WO: (k, 4, 4) the instance's objects.
+        starts: (g, 4, 4) X_WE where each screw segment starts.
+        guides: (g, 4, 4) X_WE where each screw segment ends, the guiding poses.
+        plan: up to where it failed if it did.
+        bodies: names of the pairs of bodies that touch where the plan ended, after a collision.
+    """
+
+    arm: Arm
+    number: int
+    demonstration: Demonstration
+    X_WO: Array
+    starts: Array
+    guides: Array
+    plan: Plan
+    bodies: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def cause(self) -> Cause:
+        """How the plan ended."""
+        return Cause(int(self.plan.outcome.cause))
+
+    @property
+    def failed_segment(self) -> int | None:
+        """The segment that failed, from 0."""
+        return None if self.plan.success else int(self.plan.outcome.segment)
+
+    @property
+    def failed_joint(self) -> int | None:
+        """The joint at its limit, from 0."""
+        return int(self.plan.outcome.joint) if self.cause == Cause.JOINT_LIMIT else None
+
+    @property
+    def status(self) -> tuple[str, ...]:
+        """DONE, FAILED or AHEAD for each segment."""
+        failed = len(self.guides) if self.failed_segment is None else self.failed_segment
+        return tuple(
+            DONE if i < failed else FAILED if i == failed else AHEAD
+            for i in range(len(self.guides))
+        )
+
+    @cached_property
+    def screws(self) -> Screw:
+        """The constant screw of each segment, arrays (g,)."""
+        return screw_between(self.starts, self.guides)
+
+    @cached_property
+    def margin(self) -> Array:
+        """(m, n) rad or m, distance of each joint to its nearer limit along the plan."""
+        return self.arm.margin(self.plan.q)
+
+    @cached_property
+    def progress(self) -> Array:
+        """(m,) how far along all segments, 0 to g."""
+        return self.plan.segment + self.plan.s
+
+    @property
+    def tightest(self) -> tuple[int, float]:
+        """The joint that comes nearest to a limit anywhere along the plan, and how near."""
+        joint = int(self.margin.min(axis=0).argmin())
+        return joint, float(self.margin[:, joint].min())
+
+    def axis_distance(self, segment: int) -> float:
+        """Distance in m of the hand's way in a segment from its screw's axis."""
+        screw = self.screws
+        middle = (self.starts[segment, :3, 3] + self.guides[segment, :3, 3]) / 2.0
+        across = np.cross(middle - screw.point[segment], screw.axis[segment])
+        return float(np.linalg.norm(across))
+
+    def straight(self, segment: int) -> bool:
+        """Whether a segment looks like a translation: it hardly turns, or about a far axis."""
+        turns = float(self.screws.angle[segment])
+        return turns < STRAIGHT or self.axis_distance(segment) > FAR_AXIS
+
+    def samples(self, most: int) -> NDArray[np.int64]:
+        """Indices of about `most` points of the plan, the ends of all segments among them."""
+        m = len(self.plan.q)
+        even = np.linspace(0, m - 1, min(most, m)).round().astype(np.int64)
+        ends = np.flatnonzero(np.diff(self.plan.segment) != 0)
+        return np.unique(np.concatenate([even, ends, [0, m - 1]]))
+
+
+def attempt(
+    planner: ReferencePlanner,
+    number: int,
+    demonstration: Demonstration,
+    X_WO: ArrayLike,
+    q_start: ArrayLike,
+) -> Attempt:
+    """Plan an instance with a demonstration.
+
+    Args:
+        planner: to plan with.
+        number: of the demonstration, from 0.
+        demonstration: to carry over.
+        X_WO: (k, 4, 4) the instance's objects.
+        q_start: (n,) rad or m.
+    """
+    X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
+    guides = demonstration.transfer(X_WO)
+    starts = np.concatenate([planner.arm.pose(q_start)[None], guides])[:-1]
+    plan = planner.plan(q_start, guides)
+    return Attempt(planner.arm, number, demonstration, X_WO, starts, guides, plan)
+
+
+def cut_short(plan: Plan, outcome: Outcomes) -> Plan:
+    """A plan up to where another outcome of it, of shape (), says that it ended.
+
+    A collision is what planning for the joints alone does not see.
+    """
+    segment, fraction = int(outcome.segment), float(outcome.fraction)
+    beyond = plan.segment + plan.s >= segment + fraction - 1e-9
+    last = int(np.argmax(beyond)) if beyond.any() else len(plan.q) - 1
+    kept = slice(0, last + 1)
+    return Plan(plan.q[kept], plan.segment[kept], plan.s[kept], outcome)
+
+
+def headline(attempt: Attempt) -> str:
+    """How an attempt ended, in one sentence."""
+    arm, plan, total = attempt.arm, attempt.plan, len(attempt.guides)
+    if plan.success:
+        joint, margin = attempt.tightest
+        return (
+            f"succeeds in all {total} screw segments; {arm.joint_names[joint]} comes nearest to a "
+            f"limit, {margin:.3f} {unit(arm, joint)} away"
+        )
+    segment, fraction = int(plan.outcome.segment), float(plan.outcome.fraction)
+    where = f"in screw segment {segment + 1} of {total}, {fraction:.1%} along it"
+    if attempt.cause == Cause.JOINT_LIMIT:
+        joint = int(plan.outcome.joint)
+        which, limit = "lower", arm.lower[joint]
+        if abs(plan.q[-1, joint] - arm.upper[joint]) < abs(plan.q[-1, joint] - arm.lower[joint]):
+            which, limit = "upper", arm.upper[joint]
+        return (
+            f"fails {where}: {arm.joint_names[joint]} reaches its {which} limit, "
+            f"{limit:.3f} {unit(arm, joint)}".replace("-", "−")
+        )
+    if attempt.cause == Cause.COLLISION:
+        touching = "; ".join(f"{a} touches {b}" for a, b in attempt.bodies[:2])
+        return f"fails {where}: {touching or 'the arm touches something'}"
+    return (
+        f"fails {where}: the hand gets no farther along this screw; the arm is stretched out or "
+        "near a singular pose"
+    )
+
+
+def describe_segment(attempt: Attempt, segment: int) -> str:
+    """A segment's screw in numbers for people."""
+    screw = attempt.screws
+    angle, along = float(screw.angle[segment]), float(screw.translation[segment])
+    turn = f"{np.degrees(angle):.1f}°"
+    if attempt.straight(segment):
+        way = attempt.guides[segment, :3, 3] - attempt.starts[segment, :3, 3]
+        text = f"{np.linalg.norm(way) * 100:.1f} cm"
+        if angle < STRAIGHT:
+            return f"{text}, straight"
+        return f"{text}, turning {turn} about an axis {attempt.axis_distance(segment):.1f} m off"
+    pitch = float(screw.pitch[segment]) * 2.0 * np.pi
+    text = f"{turn}, {along * 100:+.1f} cm along the axis, pitch {pitch * 100:+.0f} cm/turn"
+    return text.replace("-", "−")
+
+
+def unit(arm: Arm, joint: int) -> str:
+    """The unit of a joint's position."""
+    revolute = arm.plant.GetJointByName(arm.joint_names[joint]).type_name() == "revolute"
+    return "rad" if revolute else "m"

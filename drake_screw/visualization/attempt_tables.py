@@ -1,0 +1,90 @@
+"""Attempts as numbers: everything that the inspector shows, as JSON and CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from drake_screw.planning import Cause
+from drake_screw.tasks import WorkArea
+from drake_screw.visualization.attempt import Attempt, headline
+
+
+def attempts_json(attempts: Sequence[Attempt], facts: Mapping[str, Any], area: WorkArea) -> str:
+    """Attempts at one instance, with their screws; counted from 0 but for `round`.
+
+    Args:
+        attempts: at least one.
+        facts: what else to record.
+        area: names the objects.
+    """
+    X_WO = attempts[0].X_WO if attempts else np.empty((0, 4, 4))
+    names = [o.name for o in area.objects]
+    record = {
+        **facts,
+        "units": {"length": "m", "angle": "rad"},
+        "objects": {name: X.tolist() for name, X in zip(names, X_WO, strict=False)},
+        "attempts": [attempt_record(tried) for tried in attempts],
+    }
+    return json.dumps(record, indent=2) + "\n"
+
+
+def attempt_record(attempt: Attempt) -> dict[str, Any]:
+    """One attempt in plain data."""
+    screw, outcome, arm = attempt.screws, attempt.plan.outcome, attempt.arm
+    joint, margin = attempt.tightest
+    at = attempt.failed_joint
+    return {
+        "demonstration": attempt.number,
+        "name": attempt.demonstration.name,
+        "outcome": Cause(int(outcome.cause)).name.lower(),
+        "words": headline(attempt),
+        "segment": attempt.failed_segment,
+        "fraction": None if attempt.plan.success else float(outcome.fraction),
+        "joint": None if at is None else arm.joint_names[at],
+        "touching": [list(pair) for pair in attempt.bodies],
+        "least_margin": {"joint": arm.joint_names[joint], "margin": margin},
+        "segments": [
+            {
+                "status": status,
+                "axis": screw.axis[i].tolist(),
+                "point": screw.point[i].tolist(),
+                "angle": float(screw.angle[i]),
+                "translation": float(screw.translation[i]),
+                "X_WE_end": attempt.guides[i].tolist(),
+            }
+            for i, status in enumerate(attempt.status)
+        ],
+        "end": {
+            name: {"angle": float(q), "lower": float(low), "upper": float(high), "margin": float(m)}
+            for name, q, low, high, m in zip(
+                arm.joint_names,
+                attempt.plan.q[-1],
+                arm.lower,
+                arm.upper,
+                attempt.margin[-1],
+                strict=True,
+            )
+        },
+    }
+
+
+def attempts_csv(attempts: Sequence[Attempt]) -> str:
+    """The plans of several attempts: a row for each point, with angles and margins."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    if attempts:
+        names = attempts[0].arm.joint_names
+        margins = [f"{name}_margin" for name in names]
+        writer.writerow(["demonstration", "segment", "s", *names, *margins])
+    for tried in attempts:
+        plan = tried.plan
+        for segment, s, q, margin in zip(plan.segment, plan.s, plan.q, tried.margin, strict=True):
+            values = [f"{v:.6f}" for v in (s, *q, *margin)]
+            writer.writerow([tried.number, int(segment), *values])
+    return text.getvalue()

@@ -1,0 +1,91 @@
+"""The links that an arm moves, as Meshcat shows them: where they are, and copies of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydrake.geometry import Meshcat, Role, SceneGraph
+
+from drake_screw.robot import Arm, Workcell
+from drake_screw.screws.rotations import Array
+from drake_screw.visualization.drawing import rgba
+
+HALO = 1.03
+"""A copy is larger than its link by this factor, so that the two never flicker."""
+
+
+class Linkage:
+    """The bodies of a workcell that its arm moves.
+
+    Args:
+        workcell: with the arm.
+
+    Attributes:
+        arm: the arm.
+        names: of the links that have a look, as parts of a path of the scene tree
+            ("baxter/left_wrist"); `MeshcatVisualizer` uses the same.
+    """
+
+    def __init__(self, workcell: Workcell) -> None:
+        self.arm: Arm = workcell.arm
+        plant, graph = workcell.plant, workcell.scene_graph
+        self._graph: SceneGraph = graph
+        self._plant = plant
+        self._context = plant.CreateDefaultContext()
+        inspector = graph.model_inspector()
+        first = plant.GetJointByName(self.arm.joint_names[0]).index()
+        moved = [
+            (plant.get_body(i), plant.GetBodyFrameIdOrThrow(i))
+            for i in plant.GetBodiesKinematicallyAffectedBy([first])
+        ]
+        self._links = [
+            (body, frame, inspector.GetName(frame).replace("::", "/"))
+            for body, frame in moved
+            if inspector.NumGeometriesForFrameWithRole(frame, Role.kIllustration)
+        ]
+        self.names = tuple(name for _, _, name in self._links)
+
+    def poses(self, q: ArrayLike) -> Array:
+        """X_WL (m, l, 4, 4) of the l links, at configurations q (m, n) of the arm."""
+        full = self.arm.full_positions(q)
+        X_WL = np.empty((len(full), len(self._links), 4, 4))
+        for i, positions in enumerate(full):
+            self._plant.SetPositions(self._context, positions)
+            for j, (body, _, _) in enumerate(self._links):
+                X_WL[i, j] = self._plant.EvalBodyPoseInWorld(self._context, body).GetAsMatrix4()
+        return X_WL
+
+    def joint_frames(self, joint: int, q: ArrayLike) -> Array:
+        """X_WJ (m, 4, 4) of a joint at configurations q (m, n), z along its axis.
+
+        The frame is fixed to the link that carries the joint: it does not turn with it.
+        """
+        item = self._plant.GetJointByName(self.arm.joint_names[joint])
+        revolute = item.type_name() == "revolute"
+        z = item.revolute_axis() if revolute else item.translation_axis()
+        x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
+        x /= np.linalg.norm(x)
+        X_FJ = np.eye(4)
+        X_FJ[:3, :3] = np.stack([x, np.cross(z, x), z], axis=-1)
+        frames = []
+        for positions in self.arm.full_positions(q):
+            self._plant.SetPositions(self._context, positions)
+            X_WF = item.frame_on_parent().CalcPoseInWorld(self._context).GetAsMatrix4()
+            frames.append(X_WF @ X_FJ)
+        return np.array(frames)
+
+    def draw_copy(
+        self, meshcat: Meshcat, path: str, q: ArrayLike, color: str, opacity: float
+    ) -> None:
+        """Draw the links once more, at one configuration q (n,), all in one colour."""
+        inspector = self._graph.model_inspector()
+        X_WL = self.poses(np.asarray(q, dtype=float)[None])[0]
+        larger = np.diag([HALO, HALO, HALO, 1.0])
+        for (_, frame, name), X in zip(self._links, X_WL, strict=True):
+            meshcat.SetTransform(f"{path}/{name}", X)
+            for geometry in inspector.GetGeometries(frame, Role.kIllustration):
+                part = inspector.GetName(geometry).replace("::", "/")
+                place = f"{path}/{name}/{part}"
+                meshcat.SetObject(place, inspector.GetShape(geometry), rgba(color, opacity))
+                X_LG = inspector.GetPoseInFrame(geometry).GetAsMatrix4()
+                meshcat.SetTransform(place, X_LG @ larger)

@@ -1,0 +1,175 @@
+"""A web page of Meshcat with a panel of its own beside it, and messages to and fro.
+
+Meshcat has buttons and sliders but no text. This serves Meshcat's own page with a panel added, on
+a port of its own: everything else that the page asks for is passed on to Meshcat, and the scene
+comes over Meshcat's web socket as ever.
+"""
+
+from __future__ import annotations
+
+import json
+import queue
+import socket
+import threading
+import urllib.error
+import urllib.request
+from collections.abc import Mapping
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+from drake_screw.errors import DrakeScrewError
+from drake_screw.visualization.inspector_panel import with_panel
+
+WAIT = 20.0
+"""s. For so long a page waits for a change before it asks again."""
+
+EVERYWHERE = ("0.0.0.0", "::")
+"""Addresses that stand for all of this machine's."""
+
+_SOCKET = """<script>
+window.WebSocket = class extends WebSocket {
+  constructor(url) {
+    const there = new URL(url);
+    there.port = "PORT"; there.pathname = "/"; there.search = "";
+    super(there.href);
+    this.addEventListener("message",
+      () => window.dispatchEvent(new Event("meshcat-message")));
+  }
+};
+</script>
+"""
+
+
+class PanelServer:
+    """Serves a panel beside Meshcat.
+
+    Only `show`, `message` and `close` are for other threads than the server's; Meshcat itself is
+    not touched here, as it may be used from one thread only.
+
+    Args:
+        meshcat_port: where Meshcat serves on this machine.
+        panel: HTML of the panel.
+        title: of the page.
+        host: "localhost", or an address to listen on.
+        port: to listen on; any free one if None.
+
+    Raises:
+        DrakeScrewError: the port is taken or the address is not this machine's.
+    """
+
+    def __init__(
+        self,
+        meshcat_port: int,
+        panel: str,
+        title: str,
+        *,
+        host: str = "localhost",
+        port: int | None = None,
+    ) -> None:
+        self._state = b"{}"
+        self._version = 0
+        self._changed = threading.Condition()
+        self._messages: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
+        self._closed = False
+        here = "localhost" if host in EVERYWHERE else host
+        meshcat = f"http://{here}:{meshcat_port}"
+        server = self
+
+        class Handler(BaseHTTPRequestHandler):
+            protocol_version = "HTTP/1.1"
+
+            def do_GET(self) -> None:
+                server._get(self, meshcat, panel, title)
+
+            def do_POST(self) -> None:
+                server._post(self)
+
+            def log_message(self, format: str, *args: Any) -> None:
+                pass
+
+        try:
+            self._server = ThreadingHTTPServer((host, port or 0), Handler)
+        except (OSError, OverflowError) as error:
+            raise DrakeScrewError(
+                f"cannot serve on {host}, port {port}: {error}",
+                remedy="Choose another --port, or leave it out for any free one.",
+            ) from error
+        self._server.daemon_threads = True
+        shown = socket.gethostname() if host in EVERYWHERE else host
+        self.url = f"http://{shown}:{self._server.server_address[1]}/"
+        threading.Thread(target=self._server.serve_forever, daemon=True).start()
+
+    def show(self, state: Mapping[str, Any]) -> None:
+        """Give all open pages a new state."""
+        text = json.dumps(state).encode()
+        with self._changed:
+            self._state, self._version = text, self._version + 1
+            self._changed.notify_all()
+
+    def message(self, timeout: float | None = None) -> dict[str, Any] | None:
+        """The next message of a page, or None after so many seconds (None: wait)."""
+        try:
+            return self._messages.get(timeout=timeout)
+        except queue.Empty:
+            return None
+
+    def close(self) -> None:
+        """Stop serving."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+        self._server.shutdown()
+        self._server.server_close()
+
+    def _get(self, request: BaseHTTPRequestHandler, meshcat: str, panel: str, title: str) -> None:
+        place = urlsplit(request.path)
+        if place.path == "/state":
+            after = int(parse_qs(place.query).get("after", ["0"])[0])
+            with self._changed:
+                self._changed.wait_for(lambda: self._closed or self._version > after, WAIT)
+                if self._version <= after:
+                    _answer(request, 204, "application/json", b"")
+                    return
+                text = b'{"version":%d,"state":%b}' % (self._version, self._state)
+            _answer(request, 200, "application/json", text)
+            return
+        try:
+            with urllib.request.urlopen(meshcat + request.path) as answer:
+                kind = answer.headers.get("Content-Type", "application/octet-stream")
+                content = answer.read()
+        except urllib.error.URLError as error:
+            code = getattr(error, "code", 502)
+            _answer(request, code, "text/plain", str(error).encode())
+            return
+        if place.path in ("/", "/index.html"):
+            head = _SOCKET.replace("PORT", str(urlsplit(meshcat).port))
+            content = with_panel(content.decode(), panel, title, head).encode()
+        _answer(request, 200, kind, content)
+
+    def _post(self, request: BaseHTTPRequestHandler) -> None:
+        """Other sites' pages cannot send this type without being asked about it first."""
+        if request.headers.get("Content-Type") != "application/json":
+            _answer(request, 415, "text/plain", b"expected application/json")
+            return
+        try:
+            message = json.loads(request.rfile.read(int(request.headers["Content-Length"])))
+        except (ValueError, TypeError):
+            message = None
+        if not isinstance(message, dict):
+            _answer(request, 400, "text/plain", b"expected a JSON object")
+            return
+        self._messages.put(message)
+        _answer(request, 204, "text/plain", b"")
+
+
+def _answer(request: BaseHTTPRequestHandler, code: int, kind: str, content: bytes) -> None:
+    request.send_response(code)
+    request.send_header("Content-Type", kind)
+    request.send_header("Content-Length", str(len(content)))
+    request.send_header("Cache-Control", "no-store")
+    request.end_headers()
+    try:
+        request.wfile.write(content)
+    except (BrokenPipeError, ConnectionResetError):
+        request.close_connection = True

@@ -1,0 +1,178 @@
+// The inspector's panel. `page` is the state of a saved page, null where a program is behind it.
+let state = null, chosen = null, sample = 0, timer = null;
+
+function drawn() { return chosen === null ? null : state.attempts[chosen].drawn; }
+
+function update(next) {
+  const same = state && drawn() && next.chosen !== null && next.attempts[next.chosen].drawn &&
+    next.instance.key === state.instance.key && next.chosen === chosen;
+  state = next;
+  stop();
+  element("title").textContent = state.title;
+  element("round-headline").textContent = state.headline;
+  fill_select("round", state.rounds, state.round);
+  fill_select("region", state.regions, state.region);
+  element("places").hidden = element("steps").hidden = !state.live;
+  element("map").innerHTML = state.map;
+  const map = element("map").firstElementChild;
+  map.classList.toggle("pick", state.live);
+  if (state.live) map.onclick = pick;
+  element("map-words").textContent = state.map_words;
+  element("where-it-is").textContent = state.instance.where;
+  element("which").textContent = state.instance.which;
+  for (const button of document.querySelectorAll("#steps button")) {
+    button.disabled = !state.steps.includes(button.dataset.step);
+    button.onclick = () => tell({ step: button.dataset.step });
+  }
+  if (same) { choose(chosen, sample); } else { choose(state.chosen); }
+}
+
+function fill_select(id, options, value) {
+  const select = element(id), text = JSON.stringify(options);
+  if (select.dataset.options !== text) {
+    select.dataset.options = text;
+    select.replaceChildren(...options.map((option) => {
+      const item = make("option", option.text);
+      item.value = option.value === null ? "" : option.value;
+      return item;
+    }));
+  }
+  select.value = value === null ? "" : value;
+  select.onchange = () => tell({ [id]: select.value === "" ? null : Number(select.value) });
+}
+
+function pick(event) {
+  const map = event.currentTarget;
+  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(
+    map.getScreenCTM().inverse());
+  tell({ at: [map.dataset.x - point.y / 1000, map.dataset.y - point.x / 1000] });
+}
+
+function choose(index, at) {
+  chosen = index;
+  scene.clear();
+  element("demonstrations").replaceChildren(...state.attempts.map((attempt, i) => {
+    const item = entry(attempt.number, attempt.color, `${attempt.name}: ${attempt.words}`);
+    item.setAttribute("aria-current", i === chosen);
+    activate(item, () => (state.live ? tell({ demonstration: i }) : choose(i)));
+    return item;
+  }));
+  for (const [i, attempt] of state.attempts.entries())
+    if (attempt.drawn) scene.show(attempt.drawn.path, i === chosen);
+  const attempt = drawn();
+  for (const id of ["track", "headline", "segments", "joints"]) element(id).hidden = !attempt;
+  if (!attempt) { scene.apply(); return; }
+  element("headline").textContent = attempt.headline;
+  element("headline").style.borderColor = attempt.color;
+  element("segments").replaceChildren(...attempt.segments.map((segment, i) => {
+    const item = entry(i + 1, segment.color, segment.words, segment.status);
+    activate(item, () => place(attempt.at.findIndex((a) => a[0] >= i)));
+    if (segment.first < 0) { item.removeAttribute("tabindex"); item.classList.add("ahead"); }
+    return item;
+  }));
+  element("bands").replaceChildren(...attempt.segments.filter((s) => s.share > 0).map((s) => {
+    const band = make("span");
+    band.style.cssText = `flex: ${s.share}; background: ${s.color}`;
+    return band;
+  }));
+  document.querySelector("#joints tbody").replaceChildren(...attempt.joints.map((joint) => {
+    const row = make("tr");
+    const strip = make("td", "", "strip");
+    strip.innerHTML = joint.strip;
+    row.append(make("td", joint.name), strip, make("td"), make("td"));
+    return row;
+  }));
+  element("slider").max = attempt.at.length - 1;
+  place(at === undefined ? attempt.start : Math.min(at, attempt.at.length - 1));
+}
+
+function entry(number, color, words, note) {
+  const item = make("li");
+  const chip = make("span", "", "chip");
+  chip.style.background = color;
+  item.append(make("span", number, "number"), chip, make("span", words));
+  if (note) item.title = note;
+  return item;
+}
+
+function activate(item, action) {
+  item.tabIndex = 0;
+  item.onclick = action;
+  item.onkeydown = (event) => { if (event.key === "Enter") action(); };
+}
+
+function place(index) {
+  const attempt = drawn();
+  sample = Math.max(0, index);
+  element("slider").value = sample;
+  const [segment, s] = attempt.at[sample];
+  const total = attempt.segments.length;
+  for (const [path, poses] of Object.entries(attempt.moving)) scene.place(path, poses[sample]);
+  const all = element("all-axes").checked;
+  attempt.segments.forEach((s, i) => scene.show(
+    `${attempt.path}/axes/${String(i + 1).padStart(2, "0")}`,
+    all || i === segment || s.status === "failed"));
+  scene.show(attempt.path + "/ghost", element("ghost-shown").checked);
+  for (const path of Object.keys(attempt.moving))
+    if (path.startsWith("/workcell/")) scene.show(path, element("arm-shown").checked);
+  scene.show("instances", element("dots-shown").checked);
+  scene.apply();
+  element("where").textContent =
+    `screw segment ${segment + 1} of ${total}, ${(100 * s).toFixed(0)} %`;
+  document.querySelectorAll("#segments li").forEach((item, i) =>
+    item.setAttribute("aria-current", i === segment));
+  const x = 100 * (segment + s) / total;
+  document.querySelectorAll("#joints tbody tr").forEach((row, j) => {
+    const joint = attempt.joints[j], q = attempt.q[sample][j];
+    const margin = Math.min(q - joint.lower, joint.upper - q);
+    row.cells[2].textContent = q.toFixed(3);
+    row.cells[3].textContent = `${margin.toFixed(3)} ${joint.unit}`;
+    row.classList.toggle("limit", margin < 1e-4);
+    row.classList.toggle("near", margin >= 1e-4 && margin < 0.1);
+    const cursor = row.querySelector(".cursor");
+    cursor.setAttribute("x1", x);
+    cursor.setAttribute("x2", x);
+  });
+}
+
+function stop() {
+  clearInterval(timer);
+  timer = null;
+  element("play").textContent = "play";
+}
+
+function play() {
+  if (timer) { stop(); return; }
+  if (sample >= drawn().at.length - 1) place(0);
+  element("play").textContent = "pause";
+  timer = setInterval(() => {
+    if (sample >= drawn().at.length - 1) stop(); else place(sample + 1);
+  }, 50);
+}
+
+// Meshcat's camera counts y upwards.
+function look(distance) {
+  const poses = Object.entries(drawn().moving).filter(([path]) => path.startsWith("/workcell/"));
+  const [x, y, z] = poses[poses.length - 1][1][sample].slice(12, 15);
+  const eye = [x + 0.75 * distance, y - 0.5 * distance, z + 0.45 * distance];
+  viewer.set_property(["Cameras", "default", "rotated", "<object>"], "position",
+    [eye[0], eye[2], -eye[1]]);
+  viewer.set_camera_target([x, z, -y]);
+  viewer.set_dirty();
+}
+
+element("play").onclick = play;
+element("slider").oninput = (event) => { stop(); place(Number(event.target.value)); };
+element("key").innerHTML = KEY.map(([color, text]) =>
+  `<div><i style="background: ${color}"></i>${text}</div>`).join("") +
+  '<label><input type="checkbox" id="arm-shown" checked>arm</label>' +
+  '<label><input type="checkbox" id="ghost-shown" checked>ghost at the failure</label>' +
+  '<label><input type="checkbox" id="all-axes">axes of all screws</label>' +
+  '<label><input type="checkbox" id="dots-shown">instances of the round</label>' +
+  '<div class="look">look at <button id="near">the hand</button>' +
+  '<button id="far">the whole arm</button></div>';
+element("near").onclick = () => drawn() && look(0.75);
+element("far").onclick = () => drawn() && look(1.9);
+for (const box of document.querySelectorAll("#key input")) box.onchange = () => drawn() && place(sample);
+window.dispatchEvent(new Event("resize"));
+if (page) update(page); else listen(update);

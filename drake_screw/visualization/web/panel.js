@@ -1,0 +1,45 @@
+// What all pages with a panel beside Meshcat share: its scene tree, and the way to the program.
+const scene = {
+  wanted: new Map(),
+  place(path, matrix) { this.wanted.set("t" + path, () => viewer.set_transform(parts(path), matrix)); },
+  show(path, visible) {
+    this.wanted.set("v" + path, () => viewer.set_property(parts(path), "visible", visible));
+  },
+  apply() {
+    for (const change of this.wanted.values()) change();
+    viewer.set_dirty();
+  },
+  clear() { this.wanted.clear(); },
+};
+function parts(path) { return path.split("/").filter((part) => part); }
+function element(id) { return document.getElementById(id); }
+function make(tag, text, classes) {
+  const item = document.createElement(tag);
+  if (text !== undefined) item.textContent = text;
+  if (classes) item.className = classes;
+  return item;
+}
+function tell(message) {
+  return fetch("do", { method: "POST", headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(message) });
+}
+async function listen(update) {
+  let seen = 0;
+  for (;;) {
+    try {
+      const answer = await fetch("state?after=" + seen);
+      if (answer.status === 200) {
+        const { version, state } = await answer.json();
+        seen = version;
+        update(state);
+      }
+    } catch (error) {
+      seen = 0;
+      await new Promise((wake) => setTimeout(wake, 1000));
+    }
+  }
+}
+window.addEventListener("meshcat-message", (() => {
+  let timer;
+  return () => { clearTimeout(timer); timer = setTimeout(() => scene.apply(), 40); };
+})());

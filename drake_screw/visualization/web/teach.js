@@ -1,0 +1,63 @@
+// The panel at which a person leads the arm.
+const dragging = new Set();
+let rows = null;
+function slider(table, name, low, high, send) {
+  const row = make("tr"), input = make("input"), value = make("td"), margin = make("td");
+  Object.assign(input, { type: "range", min: low, max: high, step: (high - low) / 2000 });
+  input.setAttribute("aria-label", name);
+  let last = 0, later;
+  const pass = () => { last = Date.now(); send(Number(input.value)); };
+  input.oninput = () => {
+    clearTimeout(later);
+    if (Date.now() - last > 30) pass(); else later = setTimeout(pass, 30);
+  };
+  input.onpointerdown = () => dragging.add(input);
+  input.onpointerup = () => dragging.delete(input);
+  const cell = make("td");
+  cell.append(input);
+  row.append(make("td", name), cell, value, margin);
+  table.append(row);
+  return { row, input, value, margin };
+}
+function build(state) {
+  rows = {
+    hand: state.hand.map((h, i) => slider(element("hand"), h.name, h.low, h.high,
+      (value) => tell({ hand: i, value }))),
+    arm: state.joints.map((j, i) => slider(element("arm"), j.name, j.low, j.high,
+      (value) => tell({ joint: i, value }))),
+  };
+}
+listen((state) => {
+  if (!rows) build(state);
+  element("title").textContent = state.title;
+  element("headline").textContent = state.headline;
+  element("message").textContent = state.message;
+  element("clock").textContent = state.clock;
+  for (const button of document.querySelectorAll("[data-do]")) {
+    button.disabled = !state.can.includes(button.dataset.do);
+    button.onclick = () => tell({ do: button.dataset.do });
+  }
+  state.hand.forEach((h, i) => {
+    const row = rows.hand[i];
+    if (!dragging.has(row.input)) row.input.value = h.value;
+    row.value.textContent = h.value.toFixed(3) + " " + h.unit;
+    row.input.disabled = !state.leading;
+  });
+  state.joints.forEach((j, i) => {
+    const row = rows.arm[i];
+    if (!dragging.has(row.input)) row.input.value = j.value;
+    row.value.textContent = j.value.toFixed(3);
+    row.margin.textContent = j.margin.toFixed(3) + " " + j.unit;
+    row.row.className = j.margin < 0.01 ? "limit" : j.margin < 0.1 ? "near" : "";
+    row.input.disabled = !state.leading;
+  });
+  element("segments").replaceChildren(...state.segments.map((segment, i) => {
+    const item = make("li"), chip = make("span", "", "chip");
+    chip.style.background = segment.color;
+    item.append(make("span", i + 1, "number"), chip, make("span", segment.words));
+    return item;
+  }));
+});
+element("key").innerHTML = KEY.map(([color, text]) =>
+  `<div><i style="background: ${color}"></i>${text}</div>`).join("");
+window.dispatchEvent(new Event("resize"));

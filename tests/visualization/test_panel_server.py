@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+import json
+import threading
+import urllib.error
+import urllib.request
+
+import pytest
+
+from drake_screw.errors import DrakeScrewError
+from drake_screw.visualization.panel_server import PanelServer
+
+
+@pytest.fixture
+def server(meshcat):
+    server = PanelServer(meshcat.port(), "<p>my panel</p>", "a <title>")
+    yield server
+    server.close()
+
+
+def get(server: PanelServer, path: str = "") -> bytes:
+    with urllib.request.urlopen(server.url + path, timeout=10) as answer:
+        return answer.read()
+
+
+def post(server: PanelServer, content: bytes, kind: str = "application/json") -> int:
+    request = urllib.request.Request(server.url + "do", content, {"Content-Type": kind})
+    try:
+        with urllib.request.urlopen(request, timeout=10) as answer:
+            return answer.status
+    except urllib.error.HTTPError as error:
+        return error.code
+
+
+def test_the_page_is_meshcats_with_a_panel(server, meshcat) -> None:
+    page = get(server).decode()
+    assert page.index("<p>my panel</p>") < page.rindex("</body>")
+    assert "<title>a &lt;title&gt;</title>" in page
+    assert f'there.port = "{meshcat.port()}"' in page
+    assert "MeshCat.Viewer" in page
+
+
+def test_what_is_not_its_own_comes_from_meshcat(server, meshcat) -> None:
+    with urllib.request.urlopen(f"{meshcat.web_url()}/favicon.ico") as answer:
+        assert get(server, "favicon.ico") == answer.read()
+    with pytest.raises(urllib.error.HTTPError, match="404"):
+        get(server, "nothing/here")
+
+
+def test_a_new_state_wakes_whoever_waits(server) -> None:
+    server.show({"n": 1})
+    first = json.loads(get(server, "state?after=0"))
+    assert first == {"version": 1, "state": {"n": 1}}
+    heard: list[bytes] = []
+    waiting = threading.Thread(target=lambda: heard.append(get(server, "state?after=1")))
+    waiting.start()
+    server.show({"n": 2})
+    waiting.join(10)
+    assert json.loads(heard[0]) == {"version": 2, "state": {"n": 2}}
+
+
+def test_messages_arrive_in_order(server) -> None:
+    assert server.message(0.0) is None
+    for n in range(3):
+        assert post(server, json.dumps({"n": n}).encode()) == 204
+    assert [server.message(1.0) for _ in range(3)] == [{"n": 0}, {"n": 1}, {"n": 2}]
+
+
+@pytest.mark.parametrize(
+    ("content", "kind", "code"),
+    [
+        (b"{}", "text/plain", 415),
+        (b"n=1", "application/x-www-form-urlencoded", 415),
+        (b"{", "application/json", 400),
+        (b"[1]", "application/json", 400),
+    ],
+)
+def test_other_messages_are_refused(server, content, kind, code) -> None:
+    assert post(server, content, kind) == code
+    assert server.message(0.0) is None
+
+
+def test_a_taken_port_is_told(server, meshcat) -> None:
+    port = int(server.url.rsplit(":", 1)[1].strip("/"))
+    with pytest.raises(DrakeScrewError, match=f"port {port}"):
+        PanelServer(meshcat.port(), "", "", port=port)
