@@ -138,6 +138,8 @@ def run(
         command = f"drake-screw run --resume {job.directory.path}"
         console.print(f"interrupted; carry on with: {command}", soft_wrap=True)
         raise typer.Exit(130) from None
+    if view is not None and console.is_terminal:
+        console.input("the page stays until you press Enter ")
     raise typer.Exit(0 if finished.status == "certified" else 1)
 
 
@@ -182,11 +184,14 @@ def report(
 ) -> None:
     """Tell a finished run again, and draw its pictures anew."""
     from drake_screw.scenario.console import tell
+    from drake_screw.scenario.inspection import Inspection
+    from drake_screw.scenario.report_page import write_report
     from drake_screw.scenario.runner import open_run, redraw
 
     job, console = open_run(run), Console()
     tell(job, job.replay(), console)
     redraw(job)
+    console.print(f"written: {write_report(Inspection(job))}", soft_wrap=True)
 
 
 @app.command(epilog="Example:  drake-screw study pouring --regions 1,4,16 --runs 200")
@@ -249,7 +254,7 @@ def inspect(
         Path | None, typer.Option(metavar="FILE", help="Write a page instead of serving one.")
     ] = None,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "localhost",
-    port: Annotated[int | None, typer.Option(help="Port of Meshcat. Default: a free one.")] = None,
+    port: Annotated[int | None, typer.Option(help="Port of the page. Default: a free one.")] = None,
 ) -> None:
     """See why an instance fails: in the terminal, in Meshcat, or on a page of its own."""
     from drake_screw.scenario.inspect import inspect as carry_out

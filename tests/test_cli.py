@@ -230,7 +230,37 @@ def test_check_tells_what_would_run(command):
     assert "1,440 in a first round where nothing fails (90 in each region)" in " ".join(out.split())
 
 
-@pytest.mark.parametrize("verb", ["run", "evaluate", "check", "report"])
+def test_a_run_can_be_looked_at_exported_and_executed(command):
+    command("run", "pouring", *QUICK, "--output", "here", "-q")
+    code, out, _ = command("inspect", "here", "--html", "page.html", "--round", 1)
+    assert code == 0
+    assert Path("page.html").stat().st_size > 1e6
+    assert Path("page.csv").exists()
+    code, _, _ = command("export", "here", "--instance", 0.85, 0.2, "--output", "plan.csv")
+    assert code == 0
+    assert Path("plan.csv").read_text().startswith("time,left_s0")
+    code, out, _ = command("execute", "here", "--instance", 0.85, 0.2, "--workers", 1)
+    assert code == 0
+    assert re.search(r"done +1 of 1", out)
+    code, out, _ = command("report", "here")
+    assert code == 0
+    assert Path("here/report.html").stat().st_size > 1e4
+
+
+def test_a_study_can_be_small(command, library):
+    code, out, _ = command(
+        "study", "pouring", "--demonstrations", library, "--regions", "1,2", "--runs", 2,
+        "--workers", 1, "--output", "study", *QUICK,
+    )  # fmt: skip
+    assert code == 0
+    assert len(Path("study/runs.csv").read_text().splitlines()) == 5
+    assert "study directory: study" in out
+
+
+VERBS = ["run", "evaluate", "check", "report", "study", "inspect", "execute", "export"]
+
+
+@pytest.mark.parametrize("verb", VERBS)
 def test_every_verb_has_help_with_an_example(command, verb):
     code, out, _ = command(verb, "--help")
     assert code == 0

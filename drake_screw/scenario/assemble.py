@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from drake_screw.acquisition import RecordedTeacher, Teacher
+from drake_screw.acquisition.interactive import InteractiveTeacher
 from drake_screw.acquisition.simulated import SimulatedTeacher
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import (
@@ -169,6 +170,10 @@ class Setup:
     def teacher(self) -> Teacher:
         """Who gives demonstrations."""
         block = self.scenario.teacher
+        if block.kind == "interactive":
+            from drake_screw.scenario.teaching import TeachingDesk  # it shows a Setup
+
+            return InteractiveTeacher(TeachingDesk(self, inbox=block.folder))
         if block.folder is not None:
             arm = self.workcell.arm
             recordings = read_library(

@@ -66,7 +66,7 @@ def check(scenario: Scenario) -> str:
         )
     rate = _plans_per_second(setup)
     if rate is None:
-        lines.append("time       unknown: the teacher has no demonstration at a first random place")
+        lines.append("time       unknown without a first demonstration")
     elif isinstance(strategy, NaivePac):
         n = sample_size(regions.K, goal.epsilon, goal.delta)
         lines.append(f"samples    {n:,} in each region, {n * regions.K:,} a round, every round")
@@ -120,6 +120,8 @@ def _area_lines(setup: Setup) -> list[str]:
 
 
 def _teacher_line(setup: Setup) -> str:
+    if setup.scenario.teacher.kind == "interactive":
+        return "teacher    interactive: you, in the browser"
     teacher = setup.teacher
     if isinstance(teacher, RecordedTeacher):
         return f"teacher    recorded: {len(teacher.recordings)} recordings"
@@ -128,6 +130,8 @@ def _teacher_line(setup: Setup) -> str:
 
 def _plans_per_second(setup: Setup) -> float | None:
     """Measured with one demonstration on instances from all over the work area."""
+    if setup.scenario.teacher.kind == "interactive":
+        return None
     rng = np.random.default_rng(setup.scenario.seed)
     place = random_suggestion(setup.regions, rng)
     lesson = setup.teacher.demonstrate(place, number=0, used=(), rng=rng)

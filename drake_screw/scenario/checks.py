@@ -223,10 +223,9 @@ def _demonstrations(scenario: Scenario) -> Iterator[Problem]:
 
 def _teacher(scenario: Scenario) -> Iterator[Problem]:
     teacher = scenario.teacher
-    wanted, other = {"simulated": ("motion", "folder"), "recorded": ("folder", "motion")}[
-        teacher.kind
-    ]
-    if getattr(teacher, wanted) is None:
-        yield Problem(("teacher", wanted), f"missing; a {teacher.kind} teacher needs it")
-    if getattr(teacher, other) is not None:
-        yield Problem(("teacher", other), f"a {teacher.kind} teacher has no {other}")
+    needs = {"simulated": "motion", "recorded": "folder"}.get(teacher.kind)
+    lacks = {"simulated": "folder"}.get(teacher.kind, "motion")
+    if needs is not None and getattr(teacher, needs) is None:
+        yield Problem(("teacher", needs), f"missing; a {teacher.kind} teacher needs it")
+    if getattr(teacher, lacks) is not None:
+        yield Problem(("teacher", lacks), f"a {teacher.kind} teacher has no {lacks}")

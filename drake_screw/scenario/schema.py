@@ -22,7 +22,7 @@ STRATEGIES = (
     "ucb",
     "median_elimination",
 )
-TEACHERS = ("simulated", "recorded")
+TEACHERS = ("simulated", "recorded", "interactive")
 MOTIONS = ("pouring", "scooping")
 AXES = ("x", "y", "yaw")
 NAME_PATTERN = "[A-Za-z0-9_-]+"
@@ -187,7 +187,8 @@ class TeacherBlock:
         "what a simulated teacher shows; for that kind only", default=None, choices=MOTIONS
     )
     folder: Path | None = key(
-        "library of a recorded teacher, relative to the scenario file; for that kind only",
+        "library of a recorded teacher, or a folder an interactive one watches for recordings; "
+        "relative to the scenario file",
         default=None,
     )
 

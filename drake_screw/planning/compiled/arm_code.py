@@ -18,12 +18,11 @@ from drake_screw.planning.compiled.link_frames import LinkFrames
 from drake_screw.planning.compiled.matrices import Factor, determinant
 
 DAMPING = 1e-14
-"""Added to the diagonal of J J^T, where J's least singular value of 0.01 (see RATE_LIMIT) does not
-feel it. An arm with more joints than directions to move in, all parallel say, gets its least rates.
-"""
+"""Added to the diagonal of J J^T or J^T J, where J's least singular value of 0.01 (see RATE_LIMIT)
+does not feel it. An arm with more joints than directions to move in gets its least rates."""
 
-DAMPING_FEW = 1e-12
-"""The same for J^T J. Larger, as here rounding errors of 1e-16 are divided by it."""
+DAMPING_REDUNDANT = 1e-9
+"""The same for J^T J if it is always singular: rounding errors of 1e-16 are divided by it."""
 
 
 @dataclass
@@ -139,7 +138,8 @@ class ArmCode:
         products = [
             [list(zip(a, b, strict=True)) for b in vectors[: i + 1]] for i, a in enumerate(vectors)
         ]
-        damping = DAMPING_FEW if len(self.columns) < 6 else DAMPING
+        few = len(self.columns) < 6
+        damping = DAMPING_REDUNDANT if few and self.frames.redundant else DAMPING
         for row in products:
             row[-1].append((1.0, damping))
         return [[self.e.sum(*terms) for terms in row] for row in products]

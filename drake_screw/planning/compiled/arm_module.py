@@ -1,7 +1,7 @@
 """The compiled code of an arm: written to a file of its own, compiled once, loaded ever after.
 
-The file's name carries a hash of all that its machine code depends on, so it is never stale, and
-numba keeps the machine code next to it.
+The file's name carries a hash of all that its machine code depends on, the processor included, so
+that it is never stale, and numba keeps the machine code next to it.
 """
 
 from __future__ import annotations
@@ -9,11 +9,13 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import os
+import platform
 import sys
 import tempfile
 from pathlib import Path
 from types import ModuleType
 
+import llvmlite.binding  # type: ignore[import-untyped]
 import numba
 
 from drake_screw.planning import contract, outcomes
@@ -77,7 +79,13 @@ def source(
 
 def load(text: str) -> ModuleType:
     """The module of this source text, from the cache if it was ever loaded before."""
-    parts = [text, numba.__version__, *(Path(m.__file__ or "").read_text() for m in _SOURCES)]
+    parts = [
+        text,
+        numba.__version__,
+        platform.python_version(),
+        llvmlite.binding.get_host_cpu_name(),
+        *(Path(m.__file__ or "").read_text() for m in _SOURCES),
+    ]
     name = "arm_" + hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
     if name in sys.modules:
         return sys.modules[name]
@@ -111,12 +119,17 @@ def _mark(module: ModuleType) -> Path:
 
 
 def _folder() -> Path:
-    """Where arm modules are kept: numba's cache folder if it has one, else the user's."""
+    """Where arm modules are kept: numba's cache folder if it has one, else the user's.
+
+    Where neither can be written to, a temporary folder, which is a new one in every process.
+    """
     user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user) / "drake_screw"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="drake_screw_"))
+    for parent in (os.environ.get("NUMBA_CACHE_DIR") or user, user):
+        folder = Path(parent) / "drake_screw"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=folder):
+                return folder
+        except OSError:
+            continue
+    return Path(tempfile.mkdtemp(prefix="drake_screw_"))

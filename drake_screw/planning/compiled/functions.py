@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def cos_sin(e: Emitter, angle: Value) -> tuple[Value, Value]:
-    """cos and sin of any angle to 1e-14: polynomials on half the angle within a half turn of 0."""
+    """cos and sin of any angle to 4e-13: polynomials on half the angle within a half turn of 0."""
     turns = e.let(f"floor({angle} * {1.0 / (2.0 * np.pi)!r} + 0.5)")
     half = e.let(f"0.5 * {angle} - {np.pi!r} * {turns}")
     square = e.sum((half, half))
