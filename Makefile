@@ -42,7 +42,7 @@ layers: install-test  ## import-linter: data flows one way
 
 unit: install-test  ## pytest with coverage
 	$(BIN)/coverage erase
-	COVERAGE_PROCESS_START=pyproject.toml $(BIN)/pytest -n $(WORKERS) --cov=drake_screw --cov-report=term
+	$(BIN)/pytest -n $(WORKERS) --cov=drake_screw --cov-report=term
 
 clean:  ## remove everything that was built
 	rm -rf $(VENV) build dist .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis
