@@ -57,11 +57,13 @@ def lane_code(function: Callable[[Any], None]) -> Any:
     def body(typingctx: Any, b: Any) -> Any:
         return types.void(b), codegen
 
-    @njit(_nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-    def compiled(b):  # type: ignore[no-untyped-def]
+    def lane_function(b):  # type: ignore[no-untyped-def]
         body(b)
 
-    return compiled
+    # The symbol in machine code is named after these, and must be another one for each arm.
+    lane_function.__module__ = function.__module__
+    lane_function.__qualname__ = function.__qualname__
+    return njit(_nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)(lane_function)
 
 
 class _Body:
