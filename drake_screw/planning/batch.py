@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning.compiled import Kernel, Settings
+from drake_screw.planning.compiled import Kernel, Order, Settings
 from drake_screw.planning.outcomes import Cause, Outcomes
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import translation_distance
@@ -61,10 +61,10 @@ class BatchPlanner:
             Outcomes (N, D). A start that is not strictly inside the limits fails at once.
 
         Raises:
-            ValueError: a demonstration has no guiding poses, or names an object X_WO lacks.
+            ValueError: a number is not finite or an array has the wrong shape; a demonstration has
+                no guiding poses, or names an object that X_WO lacks.
         """
-        order = np.arange(len(demonstrations))
-        return self._plan(demonstrations, np.asarray(X_WO, dtype=float), q_start, order, False)
+        return self._plan(demonstrations, X_WO, q_start, None, False)
 
     def any_success(
         self, demonstrations: Sequence[Demonstration], X_WO: ArrayLike, q_start: ArrayLike
@@ -74,26 +74,24 @@ class BatchPlanner:
         Takes and returns what `all_outcomes` does; demonstrations left over are NOT_TRIED. The
         order only saves time: whether an instance succeeds does not depend on it.
         """
-        X_WO = np.asarray(X_WO, dtype=float)
-        away = [translation_distance(X_WO, d.X_WO).sum(axis=-1) for d in demonstrations]
-        order = np.argsort(np.array(away), axis=0, kind="stable").T
-        return self._plan(demonstrations, X_WO, q_start, order, True)
+        there = [d.X_WO for d in demonstrations]
+
+        def nearest_first(X_WO: Array) -> Array:
+            away = [translation_distance(X_WO, X).sum(axis=-1) for X in there]
+            return np.argsort(np.stack(away, axis=-1), axis=-1, kind="stable")
+
+        return self._plan(demonstrations, X_WO, q_start, nearest_first, True)
 
     def _plan(
         self,
         demonstrations: Sequence[Demonstration],
-        X_WO: Array,
+        X_WO: ArrayLike,
         q_start: ArrayLike,
-        order: Array,
+        order: Order | None,
         stop_at_success: bool,
     ) -> Outcomes:
-        for d in demonstrations:
-            if len(d.X_OE) == 0 or d.objects.max() >= X_WO.shape[1]:
-                raise ValueError(
-                    f"demonstration '{d.name}' has {len(d.X_OE)} guiding poses for the objects "
-                    f"{sorted(set(d.objects.tolist()))}; X_WO has {X_WO.shape[1]} objects"
-                )
-        q_start = np.asarray(q_start, dtype=float)
+        X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
+        self._check(demonstrations, X_WO, q_start)
         margin = np.minimum(q_start - self.chain.lower, self.chain.upper - q_start)
         if (margin <= 0.0).any():
             shape, joint = (len(X_WO), len(demonstrations)), int(np.argmin(margin))
@@ -114,3 +112,20 @@ class BatchPlanner:
         )
         self.evaluations += EVALUATIONS_PER_STEP * int(answers.steps.sum())
         return Outcomes(answers.cause, answers.segment, answers.joint, answers.fraction)
+
+    def _check(self, demonstrations: Sequence[Demonstration], X_WO: Array, q_start: Array) -> None:
+        if q_start.shape != (self.chain.n,) or not np.isfinite(q_start).all():
+            raise ValueError(f"q_start must be {self.chain.n} finite numbers, it is {q_start}")
+        if X_WO.ndim != 4 or X_WO.shape[2:] != (4, 4):
+            raise ValueError(f"X_WO has shape {X_WO.shape}, expected (N, k, 4, 4)")
+        if not np.isfinite(X_WO.sum()):
+            bad = int(np.argmax(~np.isfinite(X_WO).all(axis=(1, 2, 3))))
+            raise ValueError(f"object poses X_WO of instance {bad} are not finite:\n{X_WO[bad]}")
+        for d in demonstrations:
+            if len(d.X_OE) == 0 or d.objects.max() >= X_WO.shape[1]:
+                raise ValueError(
+                    f"demonstration '{d.name}' has {len(d.X_OE)} guiding poses for the objects "
+                    f"{sorted(set(d.objects.tolist()))}; X_WO has {X_WO.shape[1]} objects"
+                )
+            if not np.isfinite(d.X_OE).all():
+                raise ValueError(f"demonstration '{d.name}' has guiding poses that are not finite")

@@ -17,3 +17,16 @@ RATE_LIMIT = 100.0
 Both are Euclidean norms: of joint rates, and of the hand's spatial velocity with lengths divided
 by LENGTH. It bounds the inverse of the Jacobian's least singular value along the motion's twist.
 """
+
+MISFIT_LIMIT = 1e-2
+"""Part of the hand's twist that the joints cannot give at which a pose is called unreachable.
+
+It is what J dq/ds lacks of the twist, in RATE_LIMIT's measure of hand motion: at a singularity, or
+wherever an arm of fewer than six joints is asked for a motion that it does not have.
+"""
+
+ORIENTATION_MIN = 1e-14
+"""det(J^T J') at two points of a path is negative if it is below minus this, and not by rounding.
+
+With six joints or fewer that tells that the path leads through a singularity in between.
+"""

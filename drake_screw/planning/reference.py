@@ -3,7 +3,8 @@
 It defines the question that the batch planner answers quickly. Along one constant-screw segment
 the hand's spatial twist is constant, so the joint path solves dq/ds = J(q)^+ V for s in [0, 1]
 (Mahalingam and Chakraborty, ICRA 2023). It is followed here by the classical Runge-Kutta method in
-small steps, each aimed anew at the guiding pose so that the path ends on it.
+small steps, each aimed anew at the guiding pose so that the path ends on it. The contract in words
+is docs/numerical_contract.md.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from numpy.typing import ArrayLike
 
 from drake_screw.planning.contract import (
     LENGTH,
+    MISFIT_LIMIT,
+    ORIENTATION_MIN,
     POSITION_TOLERANCE,
     RATE_LIMIT,
     ROTATION_TOLERANCE,
@@ -49,7 +52,12 @@ class ReferencePlanner:
         Returns:
             The plan, up to where it failed if it did. A start that is not strictly inside the
             limits fails at once.
+
+        Raises:
+            ValueError: a number is not finite.
         """
+        if not (np.isfinite(q_start).all() and np.isfinite(guides).all()):
+            raise ValueError("the start and the guiding poses must be finite numbers")
         path, segments, fractions = [np.array(q_start, dtype=float)], [0], [0.0]
         outcome = one_outcome(Cause.SUCCESS)
         margin = self.arm.margin(path[0])
@@ -73,11 +81,14 @@ class ReferencePlanner:
         size, s = self._twist(q, X_WG)[1], 0.0
         while s < 1.0:
             V = self._twist(q, X_WG)[0] / (1.0 - s)
-            rate = float(np.linalg.norm(self._rates(q, V)))
-            if rate > RATE_LIMIT * size:
+            rates, misfit = self._rates_and_misfit(q, V)
+            rate = float(np.linalg.norm(rates))
+            if rate > RATE_LIMIT * size or misfit > MISFIT_LIMIT * size:
                 return points, fractions, Cause.UNREACHABLE, -1
             h = min(self.step / max(size, 1e-12), self.joint_step / max(rate, 1e-12), 1.0 - s)
             moved = self._runge_kutta(q, h * V)
+            if self._passes_singularity(q, moved):
+                return points, fractions, Cause.UNREACHABLE, -1
             margin, before = self.arm.margin(moved), self.arm.margin(q)
             if (margin <= 0.0).any():
                 crossing = np.where(margin <= 0.0, before / (before - margin), np.inf)
@@ -91,7 +102,7 @@ class ReferencePlanner:
             points.append(q)
             fractions.append(s)
         if (self.arm.margin(q) <= 0.0).any():
-            return points, fractions, Cause.JOINT_LIMIT, int(np.argmin(self.arm.margin(q)))
+            return (points, fractions, Cause.JOINT_LIMIT, int(np.argmin(self.arm.margin(q))))
         arrived = _near(self.arm.pose(q), X_WG, 1.0)
         return points, fractions, Cause.SUCCESS if arrived else Cause.UNREACHABLE, -1
 
@@ -112,9 +123,26 @@ class ReferencePlanner:
 
     def _rates(self, q: Array, V: Array) -> Array:
         """J^+ V, the least joint rates that give the hand the twist V (about W's origin)."""
+        return self._rates_and_misfit(q, V)[0]
+
+    def _rates_and_misfit(self, q: Array, V: Array) -> tuple[Array, float]:
+        """`_rates`, and the size of what J times them lacks of V, as the hand feels it."""
         X_WE, J_WE = self.arm.pose_and_jacobian(q)
         V_WE = np.concatenate([V[:3], V[3:] + np.cross(V[:3], X_WE[:3, 3])])
-        return np.linalg.lstsq(J_WE, V_WE, rcond=None)[0]
+        rates = np.linalg.lstsq(J_WE, V_WE, rcond=None)[0]
+        rest = V_WE - J_WE @ rates
+        return rates, float(np.hypot(np.linalg.norm(rest[:3]), np.linalg.norm(rest[3:]) / LENGTH))
+
+    def _passes_singularity(self, q: Array, moved: Array) -> bool:
+        """Whether J's columns change their orientation, for arms that cannot get around that.
+
+        det(J(q)^T J(moved)) is the inner product of the volumes that the columns span (Cauchy and
+        Binet).
+        """
+        if self.arm.n > 6:
+            return False
+        J, J_moved = self.arm.jacobian(q), self.arm.jacobian(moved)
+        return bool(np.linalg.det(J.T @ J_moved) < -ORIENTATION_MIN)
 
     def _runge_kutta(self, q: Array, V: Array) -> Array:
         k1 = self._rates(q, V)

@@ -1,26 +1,28 @@
 """Writes the joint rates of one arm along a constant screw as straight-line code.
 
-The rates dq/ds = J^T (J J^T)^-1 xi do not depend on the frame in which J and xi are expressed. The
-frame of the middle link is taken: there the two neighbouring joint axes are constant, and the
+The rates dq/ds = J^T (J J^T)^-1 V do not depend on the frame in which J and V are expressed. The
+axes of the middle link are taken: there the two neighbouring joint axes are constant, and the
 others are at most half an arm of rotations away. With fewer than six joints the rates are
-(J^T J)^-1 J^T xi instead, the same wherever the arm can follow the screw at all.
+(J^T J)^-1 J^T V instead, the least squares fit to the motion of the hand's origin.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from drake_screw.planning.compiled.emitter import Emitter, Value, Vector
+from drake_screw.planning.compiled.functions import cos_sin
 from drake_screw.planning.compiled.link_frames import LinkFrames
+from drake_screw.planning.compiled.matrices import Factor, determinant
 
-Array = NDArray[np.float64]
+DAMPING = 1e-14
+"""Added to the diagonal of J J^T or J^T J, where J's least singular value of 0.01 (see RATE_LIMIT)
+does not feel it. An arm with more joints than directions to move in gets its least rates."""
 
-DETERMINANT_MIN = 1e-14
-"""Determinants are held above this, so that a singular J gives huge rates and not infinite ones."""
+DAMPING_REDUNDANT = 1e-9
+"""The same for J^T J if it is always singular: rounding errors of 1e-16 are divided by it."""
 
 
 @dataclass
@@ -55,7 +57,9 @@ class ArmCode:
 
     Attributes:
         base, tip: P_0 = B and C_{n-1} in M, once `walk` is done.
-        columns: n columns of J in M.
+        columns: n columns of J in M's axes.
+        about: the point in M that J's columns, as twists, are about: M's origin, or with fewer than
+            six joints the hand's.
     """
 
     frames: LinkFrames
@@ -63,6 +67,7 @@ class ArmCode:
     base: Pose = field(default_factory=Pose)
     tip: Pose = field(default_factory=Pose)
     columns: list[list[Value]] = field(default_factory=list)
+    about: Vector = (0.0, 0.0, 0.0)
 
     def walk(self, q_row: int) -> None:
         """Forward kinematics from the middle link to both ends, and the Jacobian on the way."""
@@ -81,7 +86,20 @@ class ArmCode:
             self.base.move(e, *map(float, -f.shift[i]))
             columns[i] = self._column(self.base, i)
             self._joint(self.base, i, q_row, -1.0)
-        self.columns = [columns[i] for i in range(n)]
+        if n < 6:
+            self.about = self._hand().p
+        self.columns = [self._moved(columns[i]) for i in range(n)]
+
+    def _moved(self, twist: Vector) -> list[Value]:
+        """A twist about M's origin as the twist about the point `about`."""
+        drag = self.e.cross(twist[:3], self.about)
+        return [*twist[:3], *(self.e.sum((v,), (d,)) for v, d in zip(twist[3:], drag, strict=True))]
+
+    def _hand(self) -> Pose:
+        """C_{n-1}'s axes at the origin of E, in M."""
+        hand = Pose(self.tip.x, self.tip.y, self.tip.z, self.tip.p)
+        hand.move(self.e, *map(float, self.frames.X_CE[:3, 3]))
+        return hand
 
     def _column(self, axis: Pose, i: int) -> list[Value]:
         if not self.frames.revolute[i]:
@@ -102,7 +120,7 @@ class ArmCode:
         pose.turn_z(e, c, e.sum((direction, s)))
 
     def to_middle(self, twist: Vector) -> list[Value]:
-        """A twist in B about its origin, brought to M."""
+        """A twist in B about its origin, brought to M's axes and the point `about`."""
         e, base = self.e, self.base
         w_B, v_B = twist[:3], twist[3:]
         rows = list(zip(base.x, base.y, base.z, strict=True))
@@ -112,19 +130,25 @@ class ArmCode:
             e.sum(*zip(row, v_B, strict=True), (1.0, k))
             for row, k in zip(rows, moment, strict=True)
         ]
-        return [*w, *v]
+        return self._moved([*w, *v])
 
     def gram(self) -> list[list[Value]]:
-        """The lower triangle of J J^T, or with fewer than six joints of J^T J."""
+        """The lower triangle of J J^T, or with fewer than six joints of J^T J; damped."""
         vectors = self.columns if len(self.columns) < 6 else list(zip(*self.columns, strict=True))
-        return [[self.e.dot(a, b) for b in vectors[: i + 1]] for i, a in enumerate(vectors)]
+        products = [
+            [list(zip(a, b, strict=True)) for b in vectors[: i + 1]] for i, a in enumerate(vectors)
+        ]
+        few = len(self.columns) < 6
+        damping = DAMPING_REDUNDANT if few and self.frames.redundant else DAMPING
+        for row in products:
+            row[-1].append((1.0, damping))
+        return [[self.e.sum(*terms) for terms in row] for row in products]
 
     def pose_of_hand(self) -> list[Value]:
         """X_BE as three rows of [R | p]."""
-        e, base, hand = self.e, self.base, Pose(self.tip.x, self.tip.y, self.tip.z, self.tip.p)
+        e, base, hand = self.e, self.base, self._hand()
         X_CE = self.frames.X_CE
         axes = (hand.x, hand.y, hand.z)
-        hand.move(e, *map(float, X_CE[:3, 3]))
         R_ME = [
             [e.sum(*((float(X_CE[k, j]), axes[k][i]) for k in range(3))) for j in range(3)]
             for i in range(3)
@@ -137,104 +161,32 @@ class ArmCode:
         return rows
 
 
-@dataclass
-class Factor:
-    """A symmetric positive matrix [[P, Q], [Q^T, S]], ready to be solved with.
-
-    P is of size 3 at most. Inverting it, and its complement S - Q^T P^-1 Q, by their cofactors
-    takes more multiplications than L D L^T, but few divisions and no long chain of dependent steps.
-
-    Attributes:
-        first: P^-1, last: (S - Q^T P^-1 Q)^-1, bridge: P^-1 Q, coupling: Q^T.
-    """
-
-    first: list[list[Value]]
-    last: list[list[Value]]
-    bridge: list[list[Value]]
-    coupling: list[list[Value]]
-
-    @staticmethod
-    def of(e: Emitter, A: list[list[Value]]) -> Factor:
-        """Of a matrix given by its lower triangle."""
-        k = min(3, len(A))
-        first = inverse(e, A[:k])
-        coupling = [row[:k] for row in A[k:]]
-        bridge = [[e.dot(row, column) for column in coupling] for row in first]
-        last = inverse(
-            e,
-            [
-                [
-                    e.sum((1.0, row[k + j]), *((-1.0, row[a], bridge[a][j]) for a in range(k)))
-                    for j in range(i + 1)
-                ]
-                for i, row in enumerate(A[k:])
-            ],
-        )
-        return Factor(first, last, bridge, coupling)
-
-    def solve(self, e: Emitter, b: Vector) -> list[Value]:
-        k = len(self.first)
-        y = [e.dot(row, b[:k]) for row in self.first]
-        rest = [
-            e.sum((1.0, value), *((-1.0, q, yj) for q, yj in zip(row, y, strict=True)))
-            for value, row in zip(b[k:], self.coupling, strict=True)
-        ]
-        x = [e.dot(row, rest) for row in self.last]
-        head = [
-            e.sum((1.0, value), *((-1.0, w, xj) for w, xj in zip(row, x, strict=True)))
-            for value, row in zip(y, self.bridge, strict=True)
-        ]
-        return [*head, *x]
-
-
-def inverse(e: Emitter, lower: list[list[Value]]) -> list[list[Value]]:
-    """Inverse of a symmetric positive matrix of size 0 to 3, given by its lower triangle."""
-    n = len(lower)
-    A = [[lower[max(i, j)][min(i, j)] for j in range(n)] for i in range(n)]
-    if n == 0:
-        return []
-    if n == 1:
-        cofactors: list[list[Value]] = [[1.0]]
-    elif n == 2:
-        cofactors = [[A[1][1], e.sum((-1.0, A[1][0]))], [e.sum((-1.0, A[1][0])), A[0][0]]]
-    else:
-        cofactors = [[0.0] * 3 for _ in range(3)]
-        for i in range(3):
-            for j in range(i + 1):
-                (a, b), (c, d) = ((i + 1) % 3, (i + 2) % 3), ((j + 1) % 3, (j + 2) % 3)
-                minor = e.sum((A[a][c], A[b][d]), (-1.0, A[a][d], A[b][c]))
-                cofactors[i][j] = cofactors[j][i] = minor
-    determinant = e.dot(A[0], cofactors[0])
-    scale = e.let(f"1.0 / max({determinant}, {DETERMINANT_MIN})")
-    return [[e.sum((scale, c)) for c in row] for row in cofactors]
-
-
 def joint_rates(
     e: Emitter, columns: list[list[Value]], factor: Factor, twist: Vector
 ) -> list[Value]:
-    """J^+ twist, all in M."""
+    """J^+ twist."""
     if len(columns) < 6:
         return factor.solve(e, [e.dot(column, twist) for column in columns])
     force = factor.solve(e, twist)
     return [e.dot(column, force) for column in columns]
 
 
-def cos_sin(e: Emitter, angle: Value) -> tuple[Value, Value]:
-    """cos and sin of any angle to 1e-14: polynomials on half the angle within a half turn of 0."""
-    turns = e.let(f"floor({angle} * {1.0 / (2.0 * np.pi)!r} + 0.5)")
-    half = e.let(f"0.5 * {angle} - {np.pi!r} * {turns}")
-    square = e.sum((half, half))
-    quotient = e.polynomial(str(square), _SIN)
-    sine = e.sum((half, quotient))
-    cosine = e.polynomial(str(square), _COS)
-    return e.let(f"1.0 - 2.0*{sine}*{sine}"), e.sum((2.0, sine, cosine))
+def misfit(e: Emitter, columns: list[list[Value]], rates: Vector, twist: Vector) -> Value:
+    """|twist - J rates|^2."""
+    rest = [
+        e.sum(
+            (1.0, v),
+            *((-1.0, column[k], rate) for column, rate in zip(columns, rates, strict=True)),
+        )
+        for k, v in enumerate(twist)
+    ]
+    return e.dot(rest, rest)
 
 
-def fit(f: Callable[[Array], Array], degree: int, end: float) -> list[float]:
-    """Coefficients of the Chebyshev interpolant of f on [0, end]."""
-    fit = np.polynomial.Chebyshev.interpolate(f, degree, domain=[0.0, end])
-    return [float(c) for c in fit.convert(kind=np.polynomial.Polynomial).coef]
+def orientation(e: Emitter, before: list[list[Value]], after: list[list[Value]]) -> Value:
+    """det(J_before^T J_after), of at most six joints.
 
-
-_SIN = fit(lambda x: np.sinc(np.sqrt(x) / np.pi), 6, (np.pi / 2) ** 2)
-_COS = fit(lambda x: np.cos(np.sqrt(x)), 7, (np.pi / 2) ** 2)
+    It is the inner product of the volumes that the columns span (Cauchy and Binet), which turns
+    negative where a path passes through a singularity in between.
+    """
+    return determinant(e, [[e.dot(a, b) for b in after] for a in before])

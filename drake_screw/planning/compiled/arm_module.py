@@ -1,7 +1,7 @@
 """The compiled code of an arm: written to a file of its own, compiled once, loaded ever after.
 
-The file's name carries a hash of all that its machine code depends on, so it is never stale, and
-numba keeps the machine code next to it.
+The file's name carries a hash of all that its machine code depends on, the processor included, so
+that it is never stale, and numba keeps the machine code next to it.
 """
 
 from __future__ import annotations
@@ -9,45 +9,40 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import os
+import platform
 import sys
 import tempfile
 from pathlib import Path
 from types import ModuleType
 
+import llvmlite.binding  # type: ignore[import-untyped]
 import numba
 
 from drake_screw.planning import contract, outcomes
-from drake_screw.planning.compiled import code_hints, crossing, lanes, rows, step_code
+from drake_screw.planning.compiled import crossing, lanes, lowering, rows, step_code
 from drake_screw.planning.compiled.link_frames import LinkFrames
 
-_SOURCES = (code_hints, contract, crossing, lanes, outcomes, rows)
+_SOURCES = (contract, crossing, lanes, lowering, outcomes, rows)
 """Modules that are compiled into that of an arm."""
 
 _MODULE = '''"""Plans of one arm, {lanes} at a time; written by drake_screw.planning.compiled."""
 
-from math import sqrt
+from numba import njit
 
-import numpy as np
-from numba import njit, uintp
-from numpy import ceil, floor
-
-from drake_screw.planning.compiled.code_hints import lane_function
 from drake_screw.planning.compiled.lanes import begin_plan, next_unit, save_start, settle
-
-lane_code = njit(error_model="numpy", fastmath={{"contract", "reassoc", "nsz", "arcp"}})
+from drake_screw.planning.compiled.lowering import lane_code
 
 
 {functions}
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def prepare(b, rows, q_start, start):
-    """Fills start, (M, s), with what `arrive` says of the start configurations (M, n)."""
-    for m in range(len(q_start)):
-        for j in range(q_start.shape[1]):
-            for i in range({lanes}):
-                b[(rows.q_stage + j) * {lanes} + i] = q_start[m, j]
-        arrive(b)
-        save_start(b, 0, rows, start, m)
+    """Fills start with what `arrive` says of the start configuration (n,)."""
+    for j in range(len(q_start)):
+        for i in range({lanes}):
+            b[(rows.q_stage + j) * {lanes} + i] = q_start[j]
+    arrive(b)
+    save_start(b, 0, rows, start)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -87,6 +82,8 @@ def load(text: str) -> ModuleType:
     parts = [
         text,
         numba.__version__,
+        platform.python_version(),
+        llvmlite.binding.get_host_cpu_name(),
         *(Path(m.__file__ or "").read_text() for m in _SOURCES),
     ]
     name = "arm_" + hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
@@ -122,12 +119,17 @@ def _mark(module: ModuleType) -> Path:
 
 
 def _folder() -> Path:
-    """Where arm modules are kept: numba's cache folder if it has one, else the user's."""
+    """Where arm modules are kept: numba's cache folder if it has one, else the user's.
+
+    Where neither can be written to, a temporary folder, which is a new one in every process.
+    """
     user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user) / "drake_screw"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="drake_screw_"))
+    for parent in (os.environ.get("NUMBA_CACHE_DIR") or user, user):
+        folder = Path(parent) / "drake_screw"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=folder):
+                return folder
+        except OSError:
+            continue
+    return Path(tempfile.mkdtemp(prefix="drake_screw_"))

@@ -86,7 +86,6 @@ class Emitter:
         return (
             f"@lane_code\ndef {name}(b):\n"
             f'    """{summary}"""\n'
-            f"    lane_function()\n"
             f"    for j in range({self.lanes}):\n        i = uintp(j)\n{body}\n"
         )
 

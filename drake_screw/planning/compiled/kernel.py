@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drake_screw.planning.compiled import arm_module
-from drake_screw.planning.compiled.lanes import Answers, Places, Problem
+from drake_screw.planning.compiled.lanes import Answers, Bounds, Places, Problem
 from drake_screw.planning.compiled.link_frames import link_frames
 from drake_screw.planning.compiled.rows import LANES, Rows
 from drake_screw.planning.compiled.step_code import Settings
@@ -18,8 +18,11 @@ from drake_screw.planning.outcomes import Cause
 
 Array = NDArray[np.float64]
 
-CHUNK = 256
-"""Instances that a thread takes at a time."""
+CHUNK = 2048
+"""Plans, about, that a thread takes at a time."""
+
+Order = Callable[[Array], NDArray[np.int64]]
+"""From object poses (N, k, 4, 4) to the order (N, D) in which demonstrations are tried."""
 
 
 class Kernel:
@@ -49,8 +52,12 @@ class Kernel:
         rows = Rows(len(screws))
         self._rows = Places(rows.q, rows.q_stage, rows.kept, self._count)
         self._X_BW = np.linalg.inv(frames.X_WB)
-        self._limits = np.array([lower, upper])
-        self._rate_max2 = settings.rate_max**2
+        self._bounds = Bounds(
+            np.array([lower, upper], dtype=float),
+            settings.rate_max**2,
+            settings.misfit_max**2,
+            settings.step_min,
+        )
 
     @property
     def compiled(self) -> bool:
@@ -63,20 +70,22 @@ class Kernel:
         objects: Sequence[NDArray[np.int64]],
         X_WO: Array,
         q_start: Array,
-        order: NDArray[np.int64] | None = None,
+        order: Order | None = None,
         *,
         stop_at_success: bool = False,
+        keep_ends: bool = False,
         threads: int | None = None,
     ) -> Answers:
         """Plans for N instances with D demonstrations.
 
         Args:
-            X_OE: guiding poses (g, 4, 4) of each demonstration in the frame of their object.
+            X_OE: guiding poses (g, 4, 4) of each demonstration in the frame of their object, g > 0.
             objects: (g,) index of that object, for each demonstration.
             X_WO: (N, k, 4, 4) object poses.
-            q_start: (n,) or (N, n) start configurations, inside the limits.
-            order: (D,) or (N, D) order in which the demonstrations are tried.
+            q_start: (n,) start configuration, inside the limits.
+            order: in which to try the demonstrations; as given if None.
             stop_at_success: leave out the demonstrations after the first that succeeds.
+            keep_ends: fill in the answers' `end`.
             threads: to use; all processors if None.
         """
         N, D = len(X_WO), len(X_OE)
@@ -86,35 +95,29 @@ class Kernel:
             np.full((N, D), -1, dtype=np.int8),
             np.zeros((N, D), dtype=np.float32),
             np.zeros((N, D), dtype=np.int32),
+            np.full((N if keep_ends else 0, D, len(q_start)), np.nan),
         )
         if N == 0 or D == 0:
             return answers
-        X_BO = np.ascontiguousarray(self._X_BW @ X_WO)
-        order = np.atleast_2d(np.arange(D) if order is None else order).astype(np.int64, order="C")
-        starts = np.atleast_2d(q_start).astype(float, order="C")
         first = np.cumsum([0, *map(len, X_OE)], dtype=np.int64)
         guides = np.concatenate(X_OE).astype(float, order="C")
         owners = np.concatenate(objects).astype(np.int64, order="C")
+        start = self._start(q_start)
+        as_given = np.arange(D)[None]
         size = D if stop_at_success else 1
+        chunk = max(LANES, CHUNK // D)
 
         def work(begin: int) -> None:
-            part = slice(begin, min(begin + CHUNK, N))
-            own = Problem(
-                X_BO[part],
-                guides,
-                owners,
-                first,
-                order if len(order) == 1 else order[part],
-                self._starts(starts if len(starts) == 1 else starts[part]),
-                self._limits,
-                self._rate_max2,
-            )
+            part = slice(begin, min(begin + chunk, N))
+            X_BO = np.ascontiguousarray(self._X_BW @ X_WO[part])
+            tried = as_given if order is None else np.ascontiguousarray(order(X_WO[part]))
+            problem = Problem(X_BO, guides, owners, first, tried, start, self._bounds)
             queue = np.array([0, (part.stop - begin) * D // size, size])
-            b, lanes = np.zeros(self._count * LANES), np.zeros((LANES, 7), dtype=np.int64)
-            self._module.run(b, lanes, queue, self._rows, own, answers.part(part))
+            b, lanes = (np.zeros(self._count * LANES), np.zeros((LANES, 7), dtype=np.int64))
+            self._module.run(b, lanes, queue, self._rows, problem, answers.part(part))
 
-        chunks = range(0, N, CHUNK)
-        if threads == 1:
+        chunks = range(0, N, chunk)
+        if threads == 1 or len(chunks) == 1:
             for begin in chunks:
                 work(begin)
         else:
@@ -123,9 +126,9 @@ class Kernel:
         arm_module.mark_compiled(self._module)
         return answers
 
-    def _starts(self, q_start: Array) -> Array:
-        n = q_start.shape[1]
-        start = np.empty((len(q_start), n + 12 + self._count - self._rows.kept))
+    def _start(self, q_start: Array) -> Array:
+        """What lanes load to start a plan: see `lanes.load_start`."""
+        start = np.empty(len(q_start) + 12 + self._count - self._rows.kept)
         b = np.zeros(self._count * LANES)
-        self._module.prepare(b, self._rows, np.ascontiguousarray(q_start), start)
+        self._module.prepare(b, self._rows, np.array(q_start, dtype=float), start)
         return start

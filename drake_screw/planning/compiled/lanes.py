@@ -18,6 +18,7 @@ from drake_screw.planning.compiled.rows import (
     EVENT,
     HAND,
     LANES,
+    MISFIT,
     NEXT_STEP,
     OFF_PLACE,
     OFF_TURN,
@@ -43,6 +44,21 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
+class Bounds(NamedTuple):
+    """What a plan must keep to.
+
+    Attributes:
+        limits: (2, n) lower and upper joint limits.
+        rate2, misfit2: squares of the bounds on |dq/ds| and on the misfit, per hand motion.
+        step: of s, at least.
+    """
+
+    limits: Array
+    rate2: float
+    misfit2: float
+    step: float
+
+
 class Problem(NamedTuple):
     """What to plan. B is the arm's base frame, N instances, D demonstrations, k objects.
 
@@ -52,9 +68,8 @@ class Problem(NamedTuple):
         objects: (g,) the object each belongs to.
         first: (D + 1,) where each demonstration's begin; the last entry is g.
         order: (N or 1, D) demonstrations in the order in which to try them.
-        start: (N or 1, s) start configurations, each with what `arrive` says of them.
-        limits: (2, n) lower and upper joint limits.
-        rate_max2: square of the bound on |dq/ds| per hand motion.
+        start: the start configuration, with what `arrive` says of it.
+        bounds: to keep to.
     """
 
     X_BO: Array
@@ -63,8 +78,7 @@ class Problem(NamedTuple):
     first: Index
     order: Index
     start: Array
-    limits: Array
-    rate_max2: float
+    bounds: Bounds
 
 
 class Places(NamedTuple):
@@ -77,13 +91,15 @@ class Places(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """(N, D) arrays, by instance and demonstration."""
+    """(N, D) arrays, by instance and demonstration, and `end`, (N, D, n), the configuration at the
+    end of each success, or (0, D, n) if it is not asked for."""
 
     cause: NDArray[np.uint8]
     segment: NDArray[np.int16]
     joint: NDArray[np.int8]
     fraction: NDArray[np.float32]
     steps: NDArray[np.int32]
+    end: Array
 
     def part(self, instances: slice) -> Answers:
         """Views on the answers of some instances."""
@@ -93,6 +109,7 @@ class Answers(NamedTuple):
             self.joint[instances],
             self.fraction[instances],
             self.steps[instances],
+            self.end[instances],
         )
 
 
@@ -101,7 +118,7 @@ ITEM, END, GUIDE, INSTANCE, DEMONSTRATION, CORRECTION, STEPS = range(7)
 plus rank in the order (-1: none left); where its run of items ends; the guiding pose ahead; ..."""
 
 
-@njit(error_model="numpy", _nrt=False)
+@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-def]
     """Decides for every lane with an event, and starts plans in lanes that are free.
 
@@ -135,8 +152,11 @@ def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-
         answers.joint[plan] = joint
         answers.fraction[plan] = fraction
         answers.steps[plan] = lanes[i, STEPS]
+        if done and answers.end.shape[0] > 0:
+            for j in range(rows.q_stage - rows.q):
+                answers.end[plan[0], plan[1], j] = b[at(rows.q_stage + j, i)]
         lanes[i, ITEM] += 1
-        if cause == SUCCESS or lanes[i, ITEM] == lanes[i, END]:
+        if done or lanes[i, ITEM] == lanes[i, END]:
             next_unit(i, lanes, queue)
         if lanes[i, ITEM] >= 0:
             begin_plan(b, i, lanes, rows, problem)
@@ -145,7 +165,7 @@ def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-
     return busy
 
 
-@njit(error_model="numpy", _nrt=False)
+@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def next_unit(i, lanes, queue):  # type: ignore[no-untyped-def]
     """Gives a lane the next unit of work, if any is left."""
     if queue[0] == queue[1]:
@@ -156,7 +176,7 @@ def next_unit(i, lanes, queue):  # type: ignore[no-untyped-def]
     queue[0] += 1
 
 
-@njit(error_model="numpy", _nrt=False)
+@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def begin_plan(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     """Puts a lane at its start configuration, aiming at the first guiding pose."""
     instance, rank = divmod(lanes[i, ITEM], problem.order.shape[1])
@@ -165,37 +185,36 @@ def begin_plan(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     lanes[i, DEMONSTRATION] = demonstration
     lanes[i, GUIDE] = problem.first[demonstration]
     lanes[i, STEPS] = 0
-    load_start(b, i, rows, problem.start, min(instance, problem.start.shape[0] - 1))
+    load_start(b, i, rows, problem.start)
     b[at(ACCEPTED, i)] = 1.0
     aim_at_guide(b, i, lanes, problem)
 
 
-@njit(error_model="numpy", _nrt=False)
-def load_start(b, i, rows, start, m):  # type: ignore[no-untyped-def]
-    """Puts a lane at the end of a step that ended in start configuration m."""
+@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+def load_start(b, i, rows, start):  # type: ignore[no-untyped-def]
+    """Puts a lane at the end of a step that ended in the start configuration."""
     n = rows.q_stage - rows.q
-    row = start[m]
     for j in range(n):
-        b[at(rows.q_stage + j, i)] = row[uintp(j)]
+        b[at(rows.q_stage + j, i)] = start[uintp(j)]
     for k in range(12):
-        b[at(POSE + k, i)] = row[uintp(n + k)]
+        b[at(POSE + k, i)] = start[uintp(n + k)]
     for k in range(rows.end - rows.kept):
-        b[at(rows.kept + k, i)] = row[uintp(n + 12 + k)]
+        b[at(rows.kept + k, i)] = start[uintp(n + 12 + k)]
 
 
-@njit(error_model="numpy", _nrt=False)
-def save_start(b, i, rows, start, m):  # type: ignore[no-untyped-def]
+@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+def save_start(b, i, rows, start):  # type: ignore[no-untyped-def]
     """The opposite of load_start."""
     n = rows.q_stage - rows.q
     for j in range(n):
-        start[m, j] = b[at(rows.q_stage + j, i)]
+        start[j] = b[at(rows.q_stage + j, i)]
     for k in range(12):
-        start[m, n + k] = b[at(POSE + k, i)]
+        start[n + k] = b[at(POSE + k, i)]
     for k in range(rows.end - rows.kept):
-        start[m, n + 12 + k] = b[at(rows.kept + k, i)]
+        start[n + 12 + k] = b[at(rows.kept + k, i)]
 
 
-@njit(error_model="numpy", _nrt=False)
+@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def aim_at_guide(b, i, lanes, problem):  # type: ignore[no-untyped-def]
     """Starts the segment to the guiding pose ahead: X_BG = X_BO X_OE."""
     guide = lanes[i, GUIDE]
@@ -212,28 +231,34 @@ def aim_at_guide(b, i, lanes, problem):  # type: ignore[no-untyped-def]
     b[at(AIM, i)] = 1.0
 
 
-@njit(error_model="numpy", _nrt=False)
+@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     """What the event of a lane means.
+
+    Where a step ends beyond the bound on |dq/ds|, 1 / |dq/ds|^2 is taken to fall linearly, as it
+    does at the end of the arm's reach, to tell whether a joint reaches its limit before.
 
     Returns:
         cause (-1: the plan goes on), joint, fraction of the segment.
     """
     progress, step = b[at(PROGRESS, i)], b[at(STEP, i)]
-    bound = problem.rate_max2 * b[at(HAND, i)]
+    hand2, start2, end2 = b[at(HAND, i)], b[at(RATE_START, i)], b[at(RATE_END, i)]
+    bound = problem.bounds.rate2 * hand2
     if lanes[i, CORRECTION] > 0:
         progress, step = 1.0, 0.0
-    if b[at(RATE_START, i)] > bound or b[at(ACCEPTED, i)] == 0.0:
+    misfits = b[at(MISFIT, i)] > problem.bounds.misfit2 * hand2
+    if b[at(ACCEPTED, i)] == 0.0 or start2 > bound or misfits:
         return UNREACHABLE, -1, progress
+    racing = (1.0 - start2 / bound) / (1.0 - start2 / end2) if end2 > bound else 2.0
     if b[at(ROOM, i)] <= 0.0:
-        joint, u = first_crossing(b, i, rows, problem.limits)
-        if joint >= 0:
+        joint, u = first_crossing(b, i, rows, problem.bounds.limits)
+        if joint >= 0 and u <= racing:
             return JOINT_LIMIT, joint, progress + u * step
+    if racing <= 1.0:
+        return UNREACHABLE, -1, progress + racing * step
     progress += step
-    if b[at(RATE_END, i)] > bound:
-        return UNREACHABLE, -1, progress
     if progress < 1.0 - 1e-9:
-        return -1, -1, 0.0
+        return (UNREACHABLE if b[at(NEXT_STEP, i)] < problem.bounds.step else -1, -1, progress)
     if (
         b[at(OFF_PLACE, i)] <= POSITION_TOLERANCE**2
         and b[at(OFF_TURN, i)] <= 2.0 * ROTATION_TOLERANCE**2
@@ -244,7 +269,5 @@ def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
         aim_at_guide(b, i, lanes, problem)
         return -1, -1, 0.0
     lanes[i, CORRECTION] += 1
-    b[at(AIM, i)] = 1.0
-    if lanes[i, CORRECTION] > CORRECTIONS:
-        return UNREACHABLE, -1, 1.0
-    return -1, -1, 0.0
+    b[at(AIM, i)] = 2.0
+    return UNREACHABLE if lanes[i, CORRECTION] > CORRECTIONS else -1, -1, 1.0

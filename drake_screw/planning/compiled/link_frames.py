@@ -17,6 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_screw.screws import adjoint, exp
+
 SNAP = 1e-13
 """Constants this close to 0, 1 or -1 are taken to be just that (radians, metres)."""
 
@@ -33,6 +35,7 @@ class LinkFrames:
         middle: m, the joint whose parent side is the middle link.
         X_WB: (4, 4) pose of the base frame B = P_0 in the world.
         X_CE: (4, 4) pose of the end effector E in the last child frame C_{n-1}.
+        redundant: some joints only repeat what others do, wherever the arm is.
     """
 
     revolute: NDArray[np.bool_]
@@ -42,6 +45,7 @@ class LinkFrames:
     middle: int
     X_WB: NDArray[np.float64]
     X_CE: NDArray[np.float64]
+    redundant: bool
 
 
 def link_frames(screws: NDArray[np.float64], home: NDArray[np.float64]) -> LinkFrames:
@@ -74,8 +78,27 @@ def link_frames(screws: NDArray[np.float64], home: NDArray[np.float64]) -> LinkF
     X_WB[:3, :3], X_WB[:3, 3] = _frame(x_parent[0], z[0]), origin[0]
     X_WC[:3, :3], X_WC[:3, 3] = _frame(x_child[-1], z[-1]), origin[-1]
     return LinkFrames(
-        revolute, _snap(turn), _snap(tilt), _snap(shift), middle, X_WB, np.linalg.inv(X_WC) @ home
+        revolute,
+        _snap(turn),
+        _snap(tilt),
+        _snap(shift),
+        middle,
+        X_WB,
+        np.linalg.inv(X_WC) @ home,
+        _redundant(screws),
     )
+
+
+def _redundant(screws: NDArray[np.float64]) -> bool:
+    """Whether the Jacobian lacks rank at each of a few random configurations."""
+    for q in np.random.default_rng(0).uniform(-1.0, 1.0, (4, len(screws))):
+        X, columns = np.eye(4), []
+        for S, angle in zip(screws, q, strict=True):
+            columns.append(adjoint(X) @ S)
+            X = X @ exp(S * angle)
+        if np.linalg.matrix_rank(np.array(columns), tol=1e-9) == min(6, len(screws)):
+            return False
+    return True
 
 
 def _origins(

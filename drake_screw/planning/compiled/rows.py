@@ -13,24 +13,26 @@ from numba import njit, uintp
 
 LANES = 16
 
-TWIST = (
-    0  # [w; v] from the present pose to the target in B about its origin, over the whole segment
-)
+TWIST = 0  # [w; v] per unit of s in B about its origin
 POSE = 6  # X_BE at the end of the step
 TARGET = 18  # X_BG, the guiding pose ahead
 STEP = 30  # of the segment parameter s
 NEXT_STEP = 31  # the step to try next
 PROGRESS = 32  # s at the start of the step
-HAND = 33  # square of the twist's hand motion: turn^2 + (travel / LENGTH)^2
+HAND = 33  # square of the segment's hand motion: turn^2 + (travel / LENGTH)^2
 ACCEPTED = 34  # 1 if the error of the step is small enough, else 0
-AIM = 35  # 1 if the lane starts a segment
+AIM = 35  # 1 if the lane starts a segment, 2 if a correction at its end
 OFF_TURN = 36  # squared Frobenius distance of the rotations of pose and target
 OFF_PLACE = 37  # squared distance of their positions, m^2
 EVENT = 38  # 1 if the lane needs a decision
 RATE_START = 39  # |dq/ds|^2 at the start of the step
 RATE_END = 40  # and at its end
 ROOM = 41  # least distance of the step to a joint limit, from below
-_HEAD = 42
+MISFIT = 42  # square of the twist that the joints cannot give, at the start of the step
+ORIENTATION = 43  # det(J_start^T J_end); negative if a singularity lies between
+VOLUME_START = 44  # det(J^T J) at the start of the step, of at most six joints
+VOLUME_END = 45  # and at its end
+_HEAD = 46
 
 
 @dataclass(frozen=True)
@@ -59,12 +61,17 @@ class Rows:
         return _HEAD + (3 + stage) * self.n
 
     @property
-    def kept(self) -> int:
-        """From here on: what `arrive` keeps for `aim`."""
+    def columns(self) -> int:
+        """J's columns at the start of the step, of arms that cannot move around a singularity."""
         return self.slope(7)
 
+    @property
+    def kept(self) -> int:
+        """From here on: what `arrive` keeps for `aim`."""
+        return self.columns + (6 * self.n if self.n <= 6 else 0)
 
-@njit(error_model="numpy", _nrt=False)
+
+@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def at(row: Any, i: Any) -> Any:
     """Index of a row and lane; unsigned, which spares the check for indices from the end."""
     return uintp(row) * uintp(LANES) + uintp(i)

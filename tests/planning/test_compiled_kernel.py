@@ -1,0 +1,141 @@
+"""The compiled planner on the shipped arm: bitwise repeatable, and ends where it says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from drake_screw.planning import BatchPlanner, Cause
+from drake_screw.planning.compiled import Kernel, kernel
+from drake_screw.planning.compiled.lanes import Answers
+from drake_screw.planning.contract import POSITION_TOLERANCE, ROTATION_TOLERANCE
+from drake_screw.robot import Workcell
+from drake_screw.scenario.assemble import Setup
+from drake_screw.scenario.loader import load_scenario
+from drake_screw.screws import exp, rotation_angle, translation_distance
+
+N, D = 500, 4
+LENGTHS = (1, 4, 2, 6)
+
+
+@pytest.fixture(scope="module")
+def workcell() -> Workcell:
+    return Setup(load_scenario("pouring")).workcell
+
+
+@pytest.fixture(scope="module")
+def baxter(workcell: Workcell) -> Kernel:
+    """The kernel that plans for the shipped scenarios."""
+    chain = workcell.arm.screw_chain()
+    return Kernel(chain.screws, chain.home, chain.lower, chain.upper)
+
+
+@pytest.fixture(scope="module")
+def work(workcell: Workcell) -> dict:
+    """Random walks of the joints, moved about with the object."""
+    rng, arm = np.random.default_rng(5), workcell.arm
+    X_OE = [
+        arm.pose(workcell.start + np.cumsum(rng.uniform(-0.35, 0.35, (g, arm.n)), axis=0))
+        for g in LENGTHS
+    ]
+    V = rng.normal(size=(N, 1, 6)) * [0.05, 0.05, 0.3, 0.06, 0.06, 0.03]
+    return {
+        "X_OE": X_OE,
+        "objects": [np.zeros(g, dtype=np.int64) for g in LENGTHS],
+        "X_WO": exp(V),
+        "q_start": workcell.start,
+    }
+
+
+@pytest.fixture(scope="module")
+def answers(baxter: Kernel, work: dict) -> Answers:
+    return baxter.plan(**work, threads=1, keep_ends=True)
+
+
+def assert_same_bits(a: Answers, b: Answers) -> None:
+    for x, y in zip(a, b, strict=True):
+        assert x.tobytes() == y.tobytes()
+
+
+def test_there_is_something_to_compare(answers: Answers) -> None:
+    for cause in (Cause.SUCCESS, Cause.JOINT_LIMIT, Cause.UNREACHABLE):
+        assert (answers.cause == cause).sum() > 50
+
+
+def test_successes_end_on_the_last_guiding_pose(
+    workcell: Workcell, work: dict, answers: Answers
+) -> None:
+    """By the plant's kinematics, not the planner's own."""
+    success = np.argwhere(answers.cause == Cause.SUCCESS)
+    assert np.isnan(answers.end[answers.cause != Cause.SUCCESS]).all()
+    arm = workcell.arm
+    for i, d in success[:: max(1, len(success) // 400)]:
+        X_WE, X_WG = arm.pose(answers.end[i, d]), work["X_WO"][i, 0] @ work["X_OE"][d][-1]
+        assert translation_distance(X_WE, X_WG) <= POSITION_TOLERANCE
+        assert rotation_angle(X_WE, X_WG) <= ROTATION_TOLERANCE
+        assert (arm.margin(answers.end[i, d]) > 0.0).all()
+
+
+@pytest.mark.parametrize("chunk", [1, 100, 700, 10**6])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_neither_chunks_nor_threads_matter(
+    baxter: Kernel,
+    work: dict,
+    answers: Answers,
+    monkeypatch: pytest.MonkeyPatch,
+    chunk: int,
+    threads: int,
+) -> None:
+    monkeypatch.setattr(kernel, "CHUNK", chunk)
+    assert_same_bits(baxter.plan(**work, threads=threads, keep_ends=True), answers)
+
+
+@pytest.mark.parametrize(
+    "part", [slice(0, 1), slice(17, 18), slice(100, 131), slice(None, None, 7)]
+)
+def test_neighbours_in_the_batch_do_not_matter(
+    baxter: Kernel, work: dict, answers: Answers, part: slice
+) -> None:
+    some = baxter.plan(**(work | {"X_WO": work["X_WO"][part]}), keep_ends=True)
+    assert_same_bits(some, Answers(*(x[part] for x in answers)))
+
+
+def test_order_does_not_matter(baxter: Kernel, work: dict, answers: Answers) -> None:
+    rng = np.random.default_rng(6)
+
+    def shuffled(X_WO: np.ndarray) -> np.ndarray:
+        return np.argsort(rng.random((len(X_WO), D)), axis=1)
+
+    assert_same_bits(baxter.plan(**work, order=shuffled, threads=1, keep_ends=True), answers)
+    some = baxter.plan(**work, order=shuffled, threads=1, keep_ends=True, stop_at_success=True)
+    tried = some.cause != Cause.NOT_TRIED
+    success = some.cause == Cause.SUCCESS
+    np.testing.assert_array_equal(success.any(axis=1), (answers.cause == Cause.SUCCESS).any(axis=1))
+    assert tried[~success.any(axis=1)].all()
+    for x, y in zip(some, answers, strict=True):
+        assert x[tried].tobytes() == y[tried].tobytes()
+
+
+def test_ends_are_left_out_unless_asked_for(baxter: Kernel, work: dict, answers: Answers) -> None:
+    lean = baxter.plan(**work)
+    assert lean.end.size == 0
+    np.testing.assert_array_equal(lean.cause, answers.cause)
+
+
+def test_a_plan_to_where_the_hand_is_takes_no_motion(
+    workcell: Workcell, baxter: Kernel, work: dict
+) -> None:
+    here = workcell.arm.pose(workcell.start)
+    plan = baxter.plan(
+        [np.stack([here, here])],
+        [np.zeros(2, dtype=np.int64)],
+        np.eye(4)[None, None],
+        workcell.start,
+        keep_ends=True,
+    )
+    assert plan.cause[0, 0] == Cause.SUCCESS
+    np.testing.assert_allclose(plan.end[0, 0], workcell.start, atol=1e-9)
+
+
+def test_compiled_says_whether_the_first_plan_waits(workcell: Workcell, answers: Answers) -> None:
+    assert BatchPlanner(workcell.arm.screw_chain()).compiled
