@@ -1,0 +1,41 @@
+"""Meshcat scenes inside a Jupyter notebook, as they stand: no server, no network."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import dataclass
+
+from pydrake.geometry import Meshcat
+
+
+@dataclass(frozen=True)
+class Embedded:
+    """A page that Jupyter shows in the output of a cell.
+
+    Attributes:
+        page: the page's HTML, complete.
+        height: of the frame it is shown in, px.
+    """
+
+    page: str
+    height: int
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe srcdoc="{html.escape(self.page)}" width="100%" height="{self.height}" '
+            'style="border: 0"></iframe>'
+        )
+
+
+def embed(meshcat: Meshcat, height: int = 480) -> Embedded:
+    """The scene as it is now, to be the last value of a notebook's cell.
+
+    It can be turned and zoomed, and a published recording played, but later changes do not reach
+    it. It takes some 2 MB in the notebook.
+
+    Args:
+        meshcat: with the scene.
+        height: of the frame, px.
+    """
+    meshcat.Flush()
+    return Embedded(meshcat.StaticHtml(), height)
