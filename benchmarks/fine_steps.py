@@ -16,6 +16,7 @@ from drake_screw.planning import Cause
 from drake_screw.planning.contract import (
     LENGTH,
     MISFIT_LIMIT,
+    ORIENTATION_MIN,
     POSITION_TOLERANCE,
     RATE_LIMIT,
     ROTATION_TOLERANCE,
@@ -141,6 +142,10 @@ def fine_outcomes(
         k4 = rates(arm(before + h1 * k3)[1], V)[0]
         q[live] = before + h1 / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         s[live] += h
+        if chain.n == 6:
+            turned = np.linalg.det(arm(before)[1]) * np.linalg.det(arm(q[live])[1])
+            passes = turned < -ORIENTATION_MIN
+            live, before = _end(out, live, segment, passes, Cause.UNREACHABLE), before[~passes]
         live = _limits(out, live, segment, before, q, lower, upper)
         arrived = live[1.0 - s[live] < 1e-9]
         if len(arrived):

@@ -22,7 +22,7 @@ class BatchPlanner:
     """Answers `ReferencePlanner`'s question for whole batches, on all processors.
 
     The first planner of an arm on a machine has its code compiled at its first use, which takes
-    some tens of seconds; later ones load it from a cache in the user's cache folder.
+    a few seconds; later ones load it from a cache in the user's cache folder.
 
     Args:
         chain: the arm.

@@ -47,7 +47,7 @@ def show(
     regions = run.setup.regions
     if not (quiet or run.setup.planner.compiled):
         console.print(
-            "compiling the planner for this arm; this happens once and takes some 20 seconds"
+            "compiling the planner for this arm; this happens once and takes a few seconds"
         )
     live = _progress(console, hidden=quiet)
     with live:
