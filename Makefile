@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 WORKERS ?= auto
 
-.PHONY: run test install install-test lint types layers unit clean help
+.PHONY: run test install install-test lint types layers unit notebooks clean help
 
 help:  ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -12,7 +12,7 @@ help:  ## list the targets
 run: install  ## set up, then run scenario pouring
 	$(BIN)/drake-screw run pouring
 
-test: install-test lint types layers unit  ## set up, then lint, check types and layers, run all tests
+test: install-test lint types layers unit notebooks  ## set up, then lint, check types and layers, run all tests and notebooks
 
 install: $(VENV)/.installed
 
@@ -43,6 +43,9 @@ layers: install-test  ## import-linter: data flows one way
 unit: install-test  ## pytest with coverage
 	$(BIN)/coverage erase
 	$(BIN)/pytest -n $(WORKERS) --cov=drake_screw --cov-report=term
+
+notebooks: install-test  ## run the tutorials
+	$(BIN)/pytest --nbmake --nbmake-timeout=300 -n $(WORKERS) tutorials
 
 clean:  ## remove everything that was built
 	rm -rf $(VENV) build dist .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis

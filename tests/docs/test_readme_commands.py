@@ -1,0 +1,57 @@
+"""The README's commands do what it says, one after the other in one folder."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+COMMAND = Path(sys.executable).with_name("drake-screw")
+LEAVES = (
+    "my_run/run.json",
+    "my_run/report.html",
+    "failing.html",
+    "mine/run.json",
+    "plan.csv",
+    "outcomes.csv",
+)
+
+
+def commands() -> list[str]:
+    """Lines of the shell blocks, joined where they are continued, without `make`."""
+    text = (ROOT / "README.md").read_text()
+    blocks = re.findall(r"^```sh\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+    lines = "".join(blocks).replace("\\\n", " ").splitlines()
+    return [line.split("  #")[0].strip() for line in lines if not line.startswith("make")]
+
+
+def test_commands_in_their_order(tmp_path: Path) -> None:
+    if not COMMAND.exists():
+        pytest.skip(f"the command is not installed beside {sys.executable}")
+    (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
+    (tmp_path / "places.csv").write_text("x,y\n0.9,0.3\n0.75,-0.1\n")
+    listed = commands()
+    assert len(listed) >= 10
+    for line in listed:
+        done = subprocess.run(
+            line.replace("drake-screw", str(COMMAND)),
+            shell=True,
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+    missing = [name for name in LEAVES if not (tmp_path / name).is_file()]
+    assert missing == []
+    for entry in re.findall(r"^      (\S+)", (ROOT / "README.md").read_text(), re.MULTILINE):
+        assert (tmp_path / "my_run" / entry).exists(), entry
+
+
+def test_shell_blocks_are_all_read() -> None:
+    verbs = {line.split()[1] for line in commands() if line.startswith("drake-screw")}
+    assert {"run", "report", "inspect", "check", "execute", "export", "evaluate"} <= verbs
