@@ -46,9 +46,10 @@ def conclude(
         spend: whether delta is shared out over the attempts of a run.
     """
     gap = worst_gap(lower, upper, region)
+    others = "no other fails more often" + (f" by over {gap:.4f}" if gap > 0.0 else "")
     ask = (
-        f"this region fails at least {lower[region]:.4f} of the time, and no other more often by "
-        f"over {gap:.4f} (confidence {level:.6g} for this round)"
+        f"this region fails at least {lower[region]:.4f} of the time, and {others} "
+        f"(confidence {level:.6g} for this round)"
     )
     return Verdict(
         certified=certified,

@@ -21,6 +21,9 @@ def sample_size(K: int, epsilon: float, delta: float) -> int:
 
     ceil((2 / epsilon^2) ln(2 K / delta)): Hoeffding's inequality and a union over K regions and two
     sides, as in the naive algorithm of Even-Dar, Mannor and Mansour (COLT 2002).
+
+    >>> sample_size(16, epsilon=0.02, delta=0.05)
+    32308
     """
     return math.ceil(2.0 / epsilon**2 * math.log(2.0 * K / delta))
 
@@ -29,6 +32,9 @@ def most_failures(n: int, goal: Goal) -> int:
     """The largest number of failures among n with estimate <= 1 - epsilon - beta.
 
     Decided on integers: in floating point 1 - 0.02 - 0.95 is not 0.03.
+
+    >>> most_failures(1000, Goal(beta=0.95, epsilon=0.02, delta=0.05))
+    30
     """
     return math.floor(n * goal.q + 1e-9)
 

@@ -16,6 +16,9 @@ def attempt_delta(delta: float, attempt: int, *, spend: bool) -> float:
 
     Raises:
         BanditError: attempts are counted from 1.
+
+    >>> [round(attempt_delta(0.05, k, spend=True), 6) for k in (1, 2, 3)]
+    [0.025, 0.008333, 0.004167]
     """
     if attempt < 1:
         raise BanditError(f"attempt {attempt}", remedy="Attempts are counted from 1.")

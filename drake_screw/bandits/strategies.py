@@ -37,6 +37,20 @@ def make_strategy(name: str, goal: Goal, **options: Any) -> Strategy:
 
     Raises:
         BanditError: no such strategy, or it has no such option.
+
+    A first round with four regions, of which only the third ever fails:
+
+    >>> import numpy as np
+    >>> strategy = make_strategy("eprocess", Goal(beta=0.95, epsilon=0.02, delta=0.05))
+    >>> verdict = strategy.decide(lambda n: np.where(np.arange(4) == 2, n, 0), 4, attempt=1)
+    >>> verdict.certified, verdict.region, verdict.samples.tolist()
+    (False, 2, [16, 16, 16, 16])
+
+    And one in which nothing fails:
+
+    >>> verdict = strategy.decide(lambda n: 0 * n, 16, attempt=1)
+    >>> verdict.certified, verdict.total_samples
+    (True, 1440)
     """
     if name not in _CLASSES:
         message, remedy = unknown("bandit", name, "drake_screw", STRATEGIES)

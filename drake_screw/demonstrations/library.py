@@ -63,7 +63,17 @@ def read_library(
     *,
     objects: int | None = None,
 ) -> tuple[Recording, ...]:
-    """All recordings in a folder, by name; parameters and errors as `read_recording`'s."""
+    """All recordings in a folder, sorted by name.
+
+    Args:
+        folder: of folders, each a recording.
+        joint_names: the arm's n joints.
+        lower, upper: (n,) limits, rad or m.
+        objects: how many object poses each must have; any number if None.
+
+    Raises:
+        RecordingError: there is no recording in it, or one of them cannot be used.
+    """
     folder = Path(folder)
     if not folder.is_dir():
         raise RecordingError(

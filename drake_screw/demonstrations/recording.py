@@ -31,6 +31,7 @@ class Recording:
             own.
         notes: what the importer changed, for people.
         source: folder it was read from.
+        robot: model of the robot it was made on; None for the arm that is planned for.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Recording:
     region_of_interest: float | None = None
     notes: tuple[str, ...] = ()
     source: Path | None = None
+    robot: str | None = None
 
     @property
     def duration(self) -> float:

@@ -34,6 +34,10 @@ class SegmentationConfig:
         rotation_tolerance: allowed distance of unit quaternions, |a - b|, from the screw.
         min_progress: least change of the screw parameter from one pose to the next.
         region_of_interest: times the smallest hand-object distance is near the object.
+
+    >>> from dataclasses import replace
+    >>> replace(SegmentationConfig(), region_of_interest=2.0).spacing
+    0.005
     """
 
     spacing: float = 0.005
@@ -100,6 +104,17 @@ def segment(X_WE: Array, config: SegmentationConfig) -> Array:
 
     From a start, the end moves forward pose by pose; the first end that no longer fits becomes the
     next start. The first and the last pose are among them.
+
+    A pose every 5 mm, 0.2 m along x and then 0.2 m along y: two screws, cut one pose behind the
+    corner. A quarter of a circle on which the hand turns along: one screw.
+
+    >>> from drake_screw.screws import exp, pose_from_planar
+    >>> corner = [(0.005 * min(i, 40), 0.005 * max(i - 40, 0), 0) for i in range(81)]
+    >>> segment(pose_from_planar(corner), SegmentationConfig()).tolist()
+    [0, 41, 80]
+    >>> turning = exp([(0, 0, 0.03 * i, 0, 0, 0) for i in range(53)])
+    >>> segment(turning @ pose_from_planar([0.2, 0, 0]), SegmentationConfig()).tolist()
+    [0, 52]
     """
     cuts, end = [0], 1
     while end < len(X_WE):

@@ -76,7 +76,13 @@ def read_instances(file: Path, area: WorkArea) -> Array:
 def outcomes_csv(x_y_yaw: Array, outcomes: Outcomes, names: list[str], area: WorkArea) -> str:
     """A row for each instance: where it is, then the outcome code of each demonstration.
 
-    Codes are ``Outcomes.codes``; yaw gets a column where it is not fixed by the work area.
+    Codes are ``Outcomes.codes``; yaw gets a column where it varies.
+
+    Args:
+        x_y_yaw: (N, k, 3) m, m, rad.
+        outcomes: (N, D).
+        names: of the D demonstrations.
+        area: names the k objects.
     """
     header, cells = [], []
     for i, item in enumerate(area.objects):

@@ -29,6 +29,7 @@ class Place:
         return Path.cwd() if self.file is None else self.file.parent
 
     def error(self, message: str, remedy: str | None = None) -> ScenarioError:
+        """An error that names this place, to be raised."""
         if self.override is not None:
             message = f"--set {self.override}: {message}"
         return ScenarioError(message, remedy=remedy, file=self.file, line=self.line)
@@ -36,18 +37,24 @@ class Place:
 
 @dataclass(frozen=True)
 class Scalar:
+    """A single value, of the type that YAML sees in it; None where nothing is written."""
+
     value: bool | int | float | str | None
     place: Place
 
 
 @dataclass(frozen=True)
 class Items:
+    """A list, in the order of the file."""
+
     items: tuple[Node, ...]
     place: Place
 
 
 @dataclass(frozen=True)
 class Entries:
+    """A mapping from keys to what is written there, in the order of the file."""
+
     entries: dict[str, Node]
     place: Place
 
@@ -89,9 +96,11 @@ class Dumper(yaml.SafeDumper):
     """
 
     def ignore_aliases(self, data: object) -> bool:
+        """Write out again what occurs twice."""
         return True
 
     def represent_str(self, data: str) -> yaml.ScalarNode:
+        """Text, in double quotes where it has characters that cannot be printed."""
         style = None if data.isprintable() else '"'
         return self.represent_scalar(_TAG + "str", data, style=style)
 

@@ -22,7 +22,11 @@ from drake_screw.screws.rotations import (
 
 
 def dual_quaternion_from_pose(X: ArrayLike) -> Array:
-    """Unit dual quaternion, its real w >= 0, of a pose; (..., 4, 4) to (..., 8)."""
+    """Unit dual quaternion, its real w >= 0, of a pose; (..., 4, 4) to (..., 8).
+
+    >>> dual_quaternion_from_pose(pose(np.eye(3), [0.2, 0.4, 0.6])).round(6).tolist()
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3]
+    """
     X = np.asarray(X, dtype=float)
     real = quaternion_from_rotation(X[..., :3, :3])
     p = np.concatenate([np.zeros_like(X[..., :1, 3]), X[..., :3, 3]], axis=-1)
@@ -73,6 +77,10 @@ def dual_quaternion_power(Q: ArrayLike, s: ArrayLike) -> Array:
 
     Returns:
         (..., 8). ScLERP from A to B is ``A (A* B)^s``.
+
+    >>> Q = dual_quaternion_from_pose(pose(np.eye(3), [0.2, 0.4, 0.6]))
+    >>> pose_from_dual_quaternion(dual_quaternion_power(Q, 0.5))[:3, 3].round(6).tolist()
+    [0.1, 0.2, 0.3]
     """
     s = np.asarray(s, dtype=float)
     screw = screw_from_twist(log(pose_from_dual_quaternion(Q)))

@@ -54,6 +54,12 @@ def screw_from_twist(V: ArrayLike) -> Screw:
 
     Args:
         V: (..., 6) as [w; v], rad and m.
+
+    >>> screw = screw_from_twist([0.0, 0.0, 2.0, 0.0, -2.0, 0.5])
+    >>> screw.axis.tolist(), screw.point[:2].tolist()
+    ([0.0, 0.0, 1.0], [1.0, 0.0])
+    >>> float(screw.angle), float(screw.translation), float(screw.pitch)
+    (2.0, 0.5, 0.25)
     """
     V = np.asarray(V, dtype=float)
     w, v = V[..., :3], V[..., 3:]
@@ -69,7 +75,15 @@ def screw_from_twist(V: ArrayLike) -> Screw:
 
 
 def screw_between(X_WA: ArrayLike, X_WB: ArrayLike) -> Screw:
-    """The screw, expressed in W, that takes pose A to pose B; poses are (..., 4, 4)."""
+    """The screw, expressed in W, that takes pose A to pose B; poses are (..., 4, 4).
+
+    From (1, 0) to (0, 1) with a quarter turn: a rotation about the origin.
+
+    >>> from drake_screw.screws import pose_from_planar
+    >>> screw = screw_between(pose_from_planar([1, 0, 0]), pose_from_planar([0, 1, np.pi / 2]))
+    >>> round(float(screw.angle), 6), bool(abs(screw.point).max() < 1e-12)
+    (1.570796, True)
+    """
     return screw_from_twist(log(np.asarray(X_WB) @ inverse(X_WA)))
 
 
@@ -85,6 +99,15 @@ def sclerp(X_WA: ArrayLike, X_WB: ArrayLike, s: ArrayLike) -> Array:
 
     Returns:
         X_WE(s): (..., 4, 4).
+
+    Half of a quarter turn about the origin:
+
+    >>> from drake_screw.screws import pose_from_planar
+    >>> X_WA, X_WB = pose_from_planar([1, 0, 0]), pose_from_planar([0, 1, np.pi / 2])
+    >>> sclerp(X_WA, X_WB, 0.5)[:2, 3].round(6).tolist()
+    [0.707107, 0.707107]
+    >>> sclerp(X_WA, X_WB, np.linspace(0, 1, 5)).shape
+    (5, 4, 4)
     """
     V = log(np.asarray(X_WB) @ inverse(X_WA))
     return exp(np.asarray(s, dtype=float)[..., None] * V) @ np.asarray(X_WA)
@@ -115,6 +138,11 @@ def nearest_on_screw(X_WA: ArrayLike, X_WB: ArrayLike, p_WQ: ArrayLike) -> Array
 
     Returns:
         s: (...) in [0, 1].
+
+    >>> from drake_screw.screws import pose_from_planar
+    >>> X_WA, X_WB = pose_from_planar([1, 0, 0]), pose_from_planar([0, 1, np.pi / 2])
+    >>> round(float(nearest_on_screw(X_WA, X_WB, [5.0, 5.0, 0.0])), 6)
+    0.5
     """
     p_AQ = np.asarray(p_WQ, dtype=float) - np.asarray(X_WA)[..., :3, 3]
     motion = _OriginMotion.between(X_WA, X_WB)

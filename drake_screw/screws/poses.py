@@ -47,6 +47,10 @@ def pose_from_planar(x_y_yaw: ArrayLike, z: ArrayLike = 0.0) -> Array:
 
     Returns:
         X_WB: (..., 4, 4).
+
+    >>> X_WB = pose_from_planar([0.9, 0.3, np.pi / 2], z=-0.1)
+    >>> (X_WB @ [1.0, 0.0, 0.0, 1.0]).round(6).tolist()
+    [0.9, 1.3, -0.1, 1.0]
     """
     x_y_yaw, z = np.asarray(x_y_yaw, dtype=float), np.asarray(z, dtype=float)
     X = np.zeros((*np.broadcast_shapes(x_y_yaw.shape[:-1], z.shape), 4, 4))
@@ -72,6 +76,12 @@ def adjoint(X_AB: ArrayLike) -> Array:
 
     Returns:
         (..., 6, 6), for twists [w; v].
+
+    Moving by V_B seen from B is moving by V_A seen from A:
+
+    >>> X_AB, V_B = pose_from_planar([1.0, 2.0, 0.5]), np.array([0.1, 0.0, 0.3, 0.0, 0.2, 0.0])
+    >>> np.allclose(exp(adjoint(X_AB) @ V_B) @ X_AB, X_AB @ exp(V_B))
+    True
     """
     X_AB = np.asarray(X_AB, dtype=float)
     R = X_AB[..., :3, :3]
@@ -89,6 +99,14 @@ def exp(V: ArrayLike) -> Array:
 
     Returns:
         X: (..., 4, 4).
+
+    A quarter turn about the z axis through (1, 0, 0), which climbs by 0.2:
+
+    >>> X = exp([0.0, 0.0, np.pi / 2, 0.0, -np.pi / 2, 0.2])
+    >>> X[:3, 3].round(6).tolist()
+    [1.0, -1.0, 0.2]
+    >>> log(X).round(6).tolist()
+    [0.0, 0.0, 1.570796, 0.0, -1.570796, 0.2]
     """
     V = np.asarray(V, dtype=float)
     w, v = V[..., :3], V[..., 3:]
@@ -118,6 +136,9 @@ def log(X: ArrayLike) -> Array:
 
     Returns:
         V: (..., 6) as [w; v], rad and m.
+
+    >>> log(pose(np.eye(3), [0.1, 0.2, 0.3])).round(6).tolist()
+    [0.0, 0.0, 0.0, 0.1, 0.2, 0.3]
     """
     X = np.asarray(X, dtype=float)
     w = rotation_vector_from_quaternion(quaternion_from_rotation(X[..., :3, :3]))

@@ -117,7 +117,16 @@ def ranges(
 
 
 def grid_regions(area: WorkArea, counts: Mapping[str, int]) -> GridRegions:
-    """A grid from cells per axis, named "x", "bowl.y", ...; axes not named are not split."""
+    """A grid from cells per axis, named "x", "bowl.y", ...; axes not named are not split.
+
+    >>> from drake_screw.tasks import ObjectArea
+    >>> area = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=0.0),))
+    >>> regions = grid_regions(area, {"x": 4, "y": 4})
+    >>> regions.K, regions.name(5)
+    (16, 'x 0.80..0.90, y 0.05..0.30')
+    >>> int(regions.index([[0.85, 0.1, 0.0]]))
+    5
+    """
     table = np.ones((len(area.objects), 3), dtype=np.int64)
     for key, count in counts.items():
         name, _, axis = key.rpartition(".")

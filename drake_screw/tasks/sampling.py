@@ -57,6 +57,17 @@ def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, co
 
     Returns:
         x_y_yaw: (count, k, 3) m, m, rad.
+
+    Drawn at once or one by one, the instances are the same:
+
+    >>> from drake_screw.tasks import ObjectArea, WorkArea, grid_regions
+    >>> area = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=0.0),))
+    >>> regions = grid_regions(area, {"x": 4, "y": 4})
+    >>> together = draw(regions, 5, seed=0, round=0, start=0, count=3)
+    >>> together.shape, set(regions.index(together).tolist())
+    ((3, 1, 3), {5})
+    >>> bool((draw(regions, 5, seed=0, round=0, start=2, count=1) == together[2:]).all())
+    True
     """
     lower, upper = regions.bounds(region)
     unit = uniform(lower.shape, seed=seed, key=(round, region), start=start, count=count)

@@ -58,6 +58,10 @@ class WorkArea:
 
         Returns:
             (..., k, 4, 4).
+
+        >>> area = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=-0.1),))
+        >>> area.X_WO([[0.9, 0.3, 0.0]])[0, :3, 3].tolist()
+        [0.9, 0.3, -0.1]
         """
         return pose_from_planar(x_y_yaw, self.z)
 

@@ -103,7 +103,7 @@ class Attempt:
         return turns < STRAIGHT or self.axis_distance(segment) > FAR_AXIS
 
     def samples(self, most: int) -> NDArray[np.int64]:
-        """Indices of about `most` points of the plan, the ends of all segments among them."""
+        """Indices (p,) of about `most` points of the plan, the ends of all segments among them."""
         m = len(self.plan.q)
         even = np.linspace(0, m - 1, min(most, m)).round().astype(np.int64)
         ends = np.flatnonzero(np.diff(self.plan.segment) != 0)

@@ -37,7 +37,7 @@ class Catalogue:
     drawn_object: int
 
     def of_region(self, region: int | None) -> NDArray[np.int64]:
-        """Places in the catalogue of one region's instances, or of all."""
+        """Places (p,) in the catalogue of one region's instances, or of all."""
         if region is None:
             return np.arange(len(self.instance))
         return np.flatnonzero(self.region == region)

@@ -121,7 +121,10 @@ def scooping(rng: np.random.Generator, held: Array) -> HandPath:
     )
 
 
-MOTIONS: Mapping[str, Callable[[np.random.Generator, Array], HandPath]] = {
+Motion = Callable[[np.random.Generator, Array], HandPath]
+"""(rng, held (c,) m) to c candidates of a motion, as `pouring` has them."""
+
+MOTIONS: Mapping[str, Motion] = {
     "pouring": pouring,
     "scooping": scooping,
 }

@@ -13,6 +13,7 @@ from drake_screw.acquisition.simulated.leading import Led, lead
 from drake_screw.acquisition.simulated.motions import (
     MOTIONS,
     HandPath,
+    Motion,
     azimuth_deviations,
     hand_poses,
     tool_lengths,
@@ -61,19 +62,20 @@ class SimulatedTeacher:
     Args:
         workcell: the arm and what it may collide with.
         area: turns requests into object poses.
-        motion: "pouring" or "scooping".
+        motion: "pouring" or "scooping", or a function like those of that name in `motions`.
 
     Raises:
         ScenarioError: no such motion.
     """
 
-    def __init__(self, workcell: Workcell, area: WorkArea, motion: str) -> None:
-        if motion not in MOTIONS:
+    def __init__(self, workcell: Workcell, area: WorkArea, motion: str | Motion) -> None:
+        if isinstance(motion, str) and motion not in MOTIONS:
             message, remedy = unknown("motion", motion, "the simulated teacher", MOTIONS)
             raise ScenarioError(message, remedy=remedy)
         self.workcell = workcell
         self.area = area
-        self.motion = motion
+        self.motion = motion if isinstance(motion, str) else motion.__name__
+        self._paths = MOTIONS[motion] if isinstance(motion, str) else motion
         self._chain = workcell.arm.screw_chain()
 
     def demonstrate(
@@ -117,7 +119,7 @@ class SimulatedTeacher:
 
     def _rehearse(self, X_WO: Array, rng: np.random.Generator, *, stretched: bool) -> _Rehearsal:
         rest, p_WO = self._chain.pose(self.workcell.start), X_WO[0, :3, 3]
-        path = MOTIONS[self.motion](rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
+        path = self._paths(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
         aside = azimuth_deviations(rng, CANDIDATES)
         X_WK = hand_poses(path, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
         led = lead(self._chain, self.workcell.start, X_WK)
