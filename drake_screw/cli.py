@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -104,6 +105,15 @@ def run(
     meshcat: Annotated[
         bool, typer.Option("--meshcat", help="Show the run in the browser as it goes on.")
     ] = False,
+    host: Annotated[
+        str, typer.Option(help="Address on which the pages listen.", show_default=True)
+    ] = "localhost",
+    port: Annotated[
+        int | None,
+        typer.Option(
+            help="Port of the page, and the next one if there are two. Default: free ones."
+        ),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print just the end.")] = False,
 ) -> None:
     """Acquire demonstrations until every region is covered, and certify it.
@@ -112,6 +122,7 @@ def run(
     130: interrupted; --resume carries the run on.
     """
     from drake_screw.scenario.console import show
+    from drake_screw.scenario.pages import check_pages, open_pages
     from drake_screw.scenario.runner import new_run, open_run, resumable
 
     console = Console()
@@ -123,23 +134,24 @@ def run(
                 remedy="Give just: drake-screw run --resume RUN",
             )
         job = resumable(open_run(resume))
+        check_pages(job.setup.scenario, meshcat, host, port)
     else:
         loaded = _load(_given(scenario), _changes(set_, seed, demonstrations), model)
+        check_pages(loaded, meshcat, host, port)
         job = new_run(loaded, output)
-    view = None
-    if meshcat:
-        from drake_screw.scenario.live import LiveView
-
-        view = LiveView(job.setup)
-        console.print(f"watch it at {view.url}", soft_wrap=True)
+    pages = open_pages(job.setup, console, meshcat=meshcat, host=host, port=port)
     try:
-        finished = show(job, console, quiet=quiet, view=view)
+        finished = show(job, console, quiet=quiet, view=pages.view)
     except KeyboardInterrupt:
         command = f"drake-screw run --resume {job.directory.path}"
         console.print(f"interrupted; carry on with: {command}", soft_wrap=True)
         raise typer.Exit(130) from None
-    if view is not None and console.is_terminal:
-        console.input("the page stays until you press Enter ")
+    else:
+        if pages.view is not None and console.is_terminal:
+            with suppress(EOFError, KeyboardInterrupt):
+                console.input("the page stays until you press Enter ")
+    finally:
+        pages.close()
     raise typer.Exit(0 if finished.status == "certified" else 1)
 
 
@@ -189,7 +201,7 @@ def report(
     from drake_screw.scenario.runner import open_run, redraw
 
     job, console = open_run(run), Console()
-    tell(job, job.replay(), console)
+    tell(job, list(job.replay()), console)
     redraw(job)
     console.print(f"written: {write_report(Inspection(job))}", soft_wrap=True)
 

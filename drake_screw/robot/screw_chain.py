@@ -36,7 +36,7 @@ class ScrewChain:
 
     @property
     def shoulder(self) -> Array:
-        """(3,) m, a point that never moves: on the first revolute axis, nearest the home hand."""
+        """(3,) m, a point on the first revolute axis, from which `reach` is counted."""
         return self._waypoints()[0]
 
     @property
@@ -56,14 +56,16 @@ class ScrewChain:
         return np.linalg.norm(self.screws[:, :3], axis=1) > 0.5
 
     def _waypoints(self) -> Array:
-        """A point on each revolute axis, each the nearest to the one before, then the hand."""
-        hand = self.home[:3, 3]
-        places: list[Array] = []
-        for S in self.screws[self._revolute]:
-            axis, point = S[:3], np.cross(S[:3], S[3:])
-            near = places[-1] if places else hand
-            places.append(point + axis * ((near - point) @ axis))
-        return np.array([*places, hand]) if places else np.array([hand, hand])
+        """A point on each revolute axis, then the hand, by the shorter of two ways.
+
+        Neither way has a step that a revolute joint can change. One goes out from the base, each
+        point the nearest to the one before; the other comes back from the hand.
+        """
+        hand, axes = self.home[:3, 3], self.screws[self._revolute]
+        out = _nearest_points(axes, hand)[1:]
+        back = _nearest_points(axes[::-1], hand)[:0:-1]
+        ways = [np.array([*way, hand]) if way else np.array([hand, hand]) for way in (out, back)]
+        return min(ways, key=lambda way: np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
     def pose(self, q: ArrayLike) -> Array:
         """Forward kinematics; q (..., n) rad or m to X_WE (..., 4, 4)."""
@@ -82,3 +84,12 @@ class ScrewChain:
             J[..., i] = adjoint(X) @ self.screws[i]
             X = X @ exp(self.screws[i] * q[..., i, None])
         return J
+
+
+def _nearest_points(axes: Array, start: Array) -> list[Array]:
+    """The start, then a point on each axis (a, 6) in turn, the nearest to the one before."""
+    places = [start]
+    for S in axes:
+        axis, point = S[:3], np.cross(S[:3], S[3:])
+        places.append(point + axis * ((places[-1] - point) @ axis))
+    return places

@@ -11,14 +11,7 @@ from drake_screw.acquisition import RecordedTeacher, Teacher
 from drake_screw.acquisition.interactive import InteractiveTeacher
 from drake_screw.acquisition.simulated import SimulatedTeacher
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
-from drake_screw.demonstrations import (
-    Demonstration,
-    Recording,
-    SegmentationConfig,
-    demonstration_from_recording,
-    read_library,
-    read_recording,
-)
+from drake_screw.demonstrations import Demonstration, Recording, SegmentationConfig
 from drake_screw.errors import ScenarioError
 from drake_screw.planning import BatchPlanner, Planner
 from drake_screw.planning.collisions import CollisionFreePlanner
@@ -30,6 +23,7 @@ from drake_screw.robot import (
     Workcell,
     build_workcell,
 )
+from drake_screw.scenario.recorder import ForeignRecordings, Recorder
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, free_axes
 
@@ -175,11 +169,13 @@ class Setup:
 
             return InteractiveTeacher(TeachingDesk(self, inbox=block.folder))
         if block.folder is not None:
-            arm = self.workcell.arm
-            recordings = read_library(
-                block.folder, arm.joint_names, arm.lower, arm.upper, objects=len(self.objects)
-            )
-            return RecordedTeacher(recordings, self.regions)
+            recordings = self.recorder.library(block.folder)
+            foreign = None
+            if self.recorder.robot is not None:
+                foreign = ForeignRecordings(
+                    self.recorder, self.segmentation, self.planner, self.workcell.start
+                )
+            return RecordedTeacher(recordings, self.regions, foreign)
         return SimulatedTeacher(self.workcell, self.area, str(block.motion))
 
     @cached_property
@@ -188,15 +184,32 @@ class Setup:
         block = self.scenario.demonstrations.initial
         if isinstance(block, int):
             return block
-        arm = self.workcell.arm
-        return tuple(
-            read_recording(folder, arm.joint_names, arm.lower, arm.upper, objects=len(self.objects))
-            for folder in block
-        )
+        return tuple(self.recorder.read(folder) for folder in block)
+
+    @cached_property
+    def own_recorder(self) -> Recorder:
+        """Recordings of the arm that is planned for."""
+        return Recorder(self.workcell.arm, self.workcell.arm, self.area)
+
+    @cached_property
+    def recorder(self) -> Recorder:
+        """Recordings that the scenario names: of another robot, if it says so.
+
+        Raises:
+            ModelError: that robot's model cannot be read, or lacks a name.
+        """
+        block = self.scenario.recorded_on
+        if block is None:
+            return self.own_recorder
+        return Recorder.of_another(block, self.workcell.arm, self.area)
+
+    def recorder_of(self, robot: str | None) -> Recorder:
+        """That of a recording's `robot`."""
+        return self.own_recorder if robot is None else self.recorder
 
     def learn(self, recording: Recording) -> Demonstration:
-        """Turn a recording into a demonstration."""
-        return demonstration_from_recording(recording, self.workcell.arm, self.segmentation)
+        """Turn a recording into a demonstration, by the kinematics of the arm it was made on."""
+        return self.recorder_of(recording.robot).learn(recording, self.segmentation)
 
     def _check_reach(self, chain: ScrewChain) -> None:
         for i, item in enumerate(self.area.objects):

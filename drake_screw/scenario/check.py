@@ -47,6 +47,7 @@ def check(scenario: Scenario) -> str:
         f"{goal.epsilon:g}, confidence {1 - goal.delta:g}",
         f"strategy   {strategy.name}: {strategy.guarantee}",
         _teacher_line(setup),
+        *_recorder_lines(setup),
         f"budget     {scenario.demonstrations.budget} demonstrations",
     ]
     corners = np.array(
@@ -126,6 +127,19 @@ def _teacher_line(setup: Setup) -> str:
     if isinstance(teacher, RecordedTeacher):
         return f"teacher    recorded: {len(teacher.recordings)} recordings"
     return f"teacher    {setup.scenario.teacher.kind}: {setup.scenario.teacher.motion}"
+
+
+def _recorder_lines(setup: Setup) -> list[str]:
+    """The arm that recordings were made on, where that is another."""
+    recorder, block = setup.recorder, setup.scenario.demonstrations
+    if recorder.model_file is None:
+        return []
+    used = setup.scenario.teacher.kind == "recorded" or not isinstance(block.initial, int)
+    return [
+        f"recorded   {'' if used else 'none yet; recordings named in the scenario would be '}"
+        f"on {recorder.model_file.stem}, {recorder.arm.n} joints, hand "
+        f"'{recorder.arm.end_effector}'"
+    ]
 
 
 def _plans_per_second(setup: Setup) -> float | None:

@@ -9,7 +9,14 @@ from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from drake_screw.errors import nearest
-from drake_screw.scenario.schema import AXES, Interval, ObjectBlock, Scenario
+from drake_screw.scenario.schema import (
+    AXES,
+    Interval,
+    ObjectBlock,
+    RecordedOnBlock,
+    RobotBlock,
+    Scenario,
+)
 
 Keys = tuple[str | int, ...]
 """The way to a value in the file: names of keys, and places in lists, counted from 0."""
@@ -44,7 +51,10 @@ def find_problems(scenario: Scenario) -> tuple[Problem, ...]:
     """
     return tuple(_block(scenario, ())) or tuple(
         problem
-        for rule in (_robot, _objects, _regions, _grid, _coverage, _demonstrations, _teacher)
+        for rule in (
+            *(_robot, _objects, _regions, _grid, _coverage),
+            *(_demonstrations, _teacher, _recorded_on),
+        )
         for problem in rule(scenario)
     )
 
@@ -110,22 +120,26 @@ def _repeated(names: Iterable[str]) -> Iterator[tuple[int, str]]:
 
 def _robot(scenario: Scenario) -> Iterator[Problem]:
     robot = scenario.robot
-    if not robot.joints:
-        yield Problem(("robot", "joints"), "expected at least one joint, found none")
-    for index, name in _repeated(robot.joints):
-        yield Problem(("robot", "joints", index), f"joint '{name}' is listed twice")
+    yield from _joints(robot, "robot", "Give its angle in robot.start.")
     if len(robot.start) != len(robot.joints):
         yield Problem(
             ("robot", "start"),
             f"expected {len(robot.joints)} angles, one for each joint, found {len(robot.start)}",
             f"Joints: {', '.join(robot.joints)}",
         )
-    for name in robot.parked:
-        if name in robot.joints:
+
+
+def _joints(arm: RobotBlock | RecordedOnBlock, block: str, instead: str) -> Iterator[Problem]:
+    if not arm.joints:
+        yield Problem((block, "joints"), "expected at least one joint, found none")
+    for index, name in _repeated(arm.joints):
+        yield Problem((block, "joints", index), f"joint '{name}' is listed twice")
+    for name in arm.parked:
+        if name in arm.joints:
             yield Problem(
-                ("robot", "parked", name),
+                (block, "parked", name),
                 f"joint '{name}' belongs to the arm, so it cannot be parked",
-                "Give its angle in robot.start.",
+                instead,
             )
 
 
@@ -229,3 +243,9 @@ def _teacher(scenario: Scenario) -> Iterator[Problem]:
         yield Problem(("teacher", needs), f"missing; a {teacher.kind} teacher needs it")
     if getattr(teacher, lacks) is not None:
         yield Problem(("teacher", lacks), f"a {teacher.kind} teacher has no {lacks}")
+
+
+def _recorded_on(scenario: Scenario) -> Iterator[Problem]:
+    block = scenario.recorded_on
+    if block is not None:
+        yield from _joints(block, "recorded_on", "Its angles are in the recordings; leave it out.")

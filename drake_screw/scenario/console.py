@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_screw.acquisition import (
+    DemonstrationRequested,
     Event,
     Finished,
     RegionsEvaluated,
@@ -25,6 +26,7 @@ from drake_screw.scenario.certificate import certificate, statement
 from drake_screw.scenario.live import LiveView
 from drake_screw.scenario.narration import describe
 from drake_screw.scenario.runner import Run
+from drake_screw.scenario.teaching import desk_of
 from drake_screw.tasks import Regions
 
 _ROWS = 24
@@ -39,12 +41,12 @@ def show(
         run: new or resumed.
         console: to write to; a live display only where it is a terminal.
         quiet: nothing but the certificate.
-        view: hears of everything, too.
+        view: hears of everything, too; so does the desk of an interactive teacher.
 
     Returns:
         The run's last event.
     """
-    regions = run.setup.regions
+    regions, desk = run.setup.regions, desk_of(run.setup)
     if not (quiet or run.setup.planner.compiled):
         console.print(
             "compiling the planner for this arm; this happens once and takes a few seconds"
@@ -52,6 +54,8 @@ def show(
     live = _progress(console, hidden=quiet)
     with live:
         task = live.add_task("starting", total=None, detail="")
+        if desk is not None:
+            desk.announce = lambda text: live.console.print(Text(text), soft_wrap=True)
 
         def progress(event: RegionsEvaluated) -> None:
             rates = event.failures / np.maximum(event.samples, 1)
@@ -68,6 +72,11 @@ def show(
         for event in run.events(progress):
             if view is not None:
                 view.hear(event)
+            if desk is not None:
+                desk.hear(event)
+            if isinstance(event, DemonstrationRequested):
+                words = f"waiting for demonstration {event.number + 1}"
+                live.update(task, description=words, detail="")
             if isinstance(event, RoundStarted):
                 live.update(task, description=describe(event, regions), detail="")
             elif not quiet and not isinstance(event, Finished):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-from drake_screw.demonstrations import read_library
 from drake_screw.errors import RunDirectoryError
 from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.instances import outcomes_csv, read_instances
@@ -18,7 +17,7 @@ def evaluate(scenario: Scenario, demonstrations: Path, instances: Path, output: 
 
     Args:
         scenario: gives robot, start configuration, objects and segmentation.
-        demonstrations: folder of recordings.
+        demonstrations: folder of recordings, of the robot that the scenario says they are of.
         instances: CSV to read, see `read_instances`.
         output: CSV to write, see `outcomes_csv`.
 
@@ -29,12 +28,8 @@ def evaluate(scenario: Scenario, demonstrations: Path, instances: Path, output: 
         DrakeScrewError: anything that cannot be read or written; nothing is written then.
     """
     setup = Setup(scenario)
-    arm = setup.workcell.arm
     x_y_yaw = read_instances(instances, setup.area)
-    recordings = read_library(
-        demonstrations, arm.joint_names, arm.lower, arm.upper, objects=len(setup.objects)
-    )
-    learned = [setup.learn(recording) for recording in recordings]
+    learned = [setup.learn(recording) for recording in setup.recorder.library(demonstrations)]
     began = time.perf_counter()
     outcomes = setup.planner.all_outcomes(learned, setup.area.X_WO(x_y_yaw), setup.workcell.start)
     seconds = time.perf_counter() - began

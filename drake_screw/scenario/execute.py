@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 
-from drake_screw.demonstrations import Demonstration, read_recording
-from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.batch import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, summary, trials_csv
@@ -21,6 +20,7 @@ from drake_screw.scenario.run_directory import write_folder
 from drake_screw.scenario.runner import Run, open_run
 from drake_screw.screws.rotations import Array
 from drake_screw.tasks import draw
+from drake_screw.visualization.lifetime import scratch
 
 ROUND = 1_000_000
 """The round whose instances are executed. No run gets that far, so they are fresh."""
@@ -54,10 +54,11 @@ def execute(
 
     Raises:
         DrakeScrewError: the run cannot be read or has no demonstrations, the instance is not one,
-            or the folder cannot be written.
+            the model lacks inertia, or the folder cannot be written.
     """
     opened = open_run(run)
     setup, demonstrations = opened.setup, known_demonstrations(opened)
+    _check_masses(setup)
     planner = collision_free_planner(setup)
 
     def plan(x_y_yaw: Array) -> Outcomes:
@@ -97,7 +98,8 @@ def execute(
             if trial.execution is not None
         ]
         if shown:
-            page = recording_html(shown, setup.robot, table=setup.table, objects=setup.objects)
+            with scratch():
+                page = recording_html(shown, setup.robot, table=setup.table, objects=setup.objects)
             (folder / "executions.html").write_text(page)
 
     folder = _new_folder(opened.directory.path / "executions")
@@ -122,6 +124,21 @@ def station_graphviz(run: Path) -> str:
     return build_station(setup.robot, table=setup.table, objects=setup.objects).graphviz
 
 
+def _check_masses(setup: Setup) -> None:
+    arm, plant = setup.workcell.arm, setup.workcell.plant
+    context = plant.CreateDefaultContext()
+    plant.SetPositions(context, arm.full_positions(setup.workcell.start))
+    M = plant.CalcMassMatrix(context)
+    for name in arm.joint_names:
+        place = plant.GetJointByName(name).velocity_start()
+        if M[place, place] <= 0.0:
+            raise ModelError(
+                f"joint '{name}' cannot be driven: what it moves has no inertia",
+                remedy="Give the links an <inertial> with mass and inertia; planning does without.",
+                file=setup.workcell.model_file,
+            )
+
+
 def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
     """The demonstrations that a run has so far.
 
@@ -129,27 +146,14 @@ def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
         RunDirectoryError: it has none.
         RecordingError: one cannot be read.
     """
-    arm, entries = run.setup.workcell.arm, run.directory.record["demonstrations"]
+    entries = run.directory.record["demonstrations"]
     if not entries:
         raise RunDirectoryError(
             "this run has no demonstrations yet",
             remedy=f"Carry it on first: drake-screw run --resume {run.directory.path}",
             file=run.directory.path,
         )
-    recordings = [
-        replace(
-            read_recording(
-                run.directory.path / entry["folder"],
-                arm.joint_names,
-                arm.lower,
-                arm.upper,
-                objects=len(run.setup.objects),
-            ),
-            name=entry["name"],
-        )
-        for entry in entries
-    ]
-    return tuple(run.setup.learn(recording) for recording in recordings)
+    return tuple(run.setup.learn(run._stored(number)[0]) for number in range(len(entries)))
 
 
 def placed(setup: Setup, numbers: Sequence[float]) -> Array:

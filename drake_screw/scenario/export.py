@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
 from drake_screw.errors import RunDirectoryError, ScenarioError, unknown
 from drake_screw.execution import FORMATS, TimeLimits
 from drake_screw.execution.batch import plan_and_time
+from drake_screw.robot import Arm
 from drake_screw.scenario.execute import (
     collision_free_planner,
     known_demonstrations,
@@ -33,14 +35,16 @@ def export(run: Path, instance: Sequence[float], format: str, output: Path) -> s
         A summary for people.
 
     Raises:
-        DrakeScrewError: there is no such format, no plan for the instance, or the file or the run
-            cannot be used; nothing is written then.
+        DrakeScrewError: there is no such format or it is of another robot, no plan for the
+            instance, or the file or the run cannot be used; nothing is written then.
     """
     if format not in FORMATS:
         message, remedy = unknown("format", format, "the export", FORMATS)
         raise ScenarioError(message, remedy=remedy)
     opened = open_run(run)
-    setup, demonstrations = opened.setup, known_demonstrations(opened)
+    setup = opened.setup
+    _check_robot(format, setup.workcell.arm)
+    demonstrations = known_demonstrations(opened)
     x_y_yaw = placed(setup, instance)
     X_WO = setup.area.X_WO(x_y_yaw)
     planner = collision_free_planner(setup)
@@ -75,3 +79,13 @@ def export(run: Path, instance: Sequence[float], format: str, output: Path) -> s
     if not setup.area.contains(x_y_yaw):
         lines.insert(0, "note: the instance lies outside the work area")
     return "\n".join(lines)
+
+
+def _check_robot(format: str, arm: Arm) -> None:
+    foreign = [name for name in arm.joint_names if name not in BAXTER_COLUMNS]
+    if format == "baxter-csv" and foreign:
+        others = " or ".join(f"--format {name}" for name in FORMATS if name != format)
+        raise ScenarioError(
+            f"the format {format} is for Baxter, which has no joint '{foreign[0]}'",
+            remedy=f"Give {others}.",
+        )

@@ -18,8 +18,9 @@ from drake_screw.visualization.inspector_panel import (
     where,
     with_panel,
 )
+from drake_screw.visualization.lifetime import keep, scratch
 from drake_screw.visualization.palette import OUTCOME_NAMES
-from drake_screw.visualization.panel_server import PanelServer
+from drake_screw.visualization.panel_server import PanelServer, warning
 
 POLL = 1.0
 """s. How often a run that is still going on is asked for new rounds."""
@@ -52,10 +53,10 @@ def inspect(
     """
     inspection = open_inspection(run)
     choice = choose(inspection, inspection.check_round(round), instance)
-    tell_instance(inspection, choice, console)
     if html is None:
         serve(inspection, choice, console, host=host, port=port)
     else:
+        tell_instance(inspection, choice, console)
         console.print(f"written: {save_page(inspection, choice, html)}", soft_wrap=True)
 
 
@@ -72,23 +73,22 @@ def serve(
     Args:
         inspection: the run.
         choice: what to show first.
-        console: told where to look; gets a table for each new instance.
+        console: told where to look, with the first instance's table, and which ones follow.
         host: "localhost", or an address to listen on, so that others can look, too.
         port: of the page; any free one if None.
     """
     stage = Stage(inspection, host)
+    keep(stage.meshcat)
     page = inspector_body(None)
     name = inspection.setup.scenario.name
     server = PanelServer(stage.meshcat.port(), page, f"{name}: inspect", host=host, port=port)
-    if host != "localhost":
-        console.print(
-            f"warning: served on {host} to everyone who can reach this machine, without a password",
-            style="yellow",
-        )
+    risk = warning(host)
+    if risk is not None:
+        console.print(risk, style="yellow", highlight=False, soft_wrap=True)
     console.print(f"open {server.url} in a browser; Ctrl-C ends it", soft_wrap=True)
     try:
         server.show(stage.show(choice, live=True))
-        _tell(inspection, choice, console)
+        tell_instance(inspection, choice, console)
         while True:
             message = server.message(POLL)
             if message is None:
@@ -110,10 +110,8 @@ def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
 
     Beside it, with the same name, are its numbers as .json and the plans as .csv.
     """
-    stage = Stage(inspection)
-    drawn = stage.show(choice, live=False)
-    title = f"{inspection.setup.scenario.name}, round {choice.round + 1}"
-    page = with_panel(stage.meshcat.StaticHtml(), inspector_body(drawn), title)
+    with scratch():
+        page = _page(inspection, choice)
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(page, encoding="utf-8")
     if choice.instance is not None:
@@ -123,6 +121,13 @@ def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
         text = attempts_json(attempts, facts, inspection.setup.area)
         file.with_suffix(".json").write_text(text)
     return file
+
+
+def _page(inspection: Inspection, choice: Choice) -> str:
+    stage = Stage(inspection)
+    drawn = stage.show(choice, live=False)
+    title = f"{inspection.setup.scenario.name}, round {choice.round + 1}"
+    return with_panel(stage.meshcat.StaticHtml(), inspector_body(drawn), title)
 
 
 def instance_table(attempts: list[Attempt]) -> Table:

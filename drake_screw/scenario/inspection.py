@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -130,14 +128,14 @@ class Inspection:
         """A round as the run told it; without drawing or planning anything."""
         directory = self.run.directory
         try:
-            remembered = directory.remembered_round(round)
+            remembered = self.run.remembered(round)
             entry: dict[str, Any] = directory.record["rounds"][round]
             count = int(entry["demonstrations"])
             suggestion = self._suggestion(entry["next_demonstration"])
             for number in range(len(self._demonstrations), count):
                 recording, _ = self.run._stored(number)
                 self._demonstrations.append(self.setup.learn(recording))
-        except (KeyError, TypeError, ValueError, IndexError, BadZipFile, zlib.error) as error:
+        except (KeyError, TypeError, ValueError, IndexError) as error:
             raise RunDirectoryError(
                 f"what it says of round {round + 1} is damaged: {error!r}",
                 remedy="Restore it, or run the scenario again.",
@@ -145,16 +143,8 @@ class Inspection:
             ) from error
         assert remembered is not None
         evaluation, verdict = remembered
-        hand, regions = (
-            tuple(self._demonstrations[:count]),
-            evaluation.partition(self.setup.regions),
-        )
-        if evaluation.outcomes.shape[1] != count or len(verdict.samples) != regions.K:
-            raise RunDirectoryError(
-                f"round {round + 1} does not fit the scenario beside it",
-                remedy="Restore the directory, or run the scenario again.",
-                file=directory.round_folder(round),
-            )
+        hand = tuple(self._demonstrations[:count])
+        regions = evaluation.partition(self.setup.regions)
         return RoundFinished(round, hand, evaluation, verdict, suggestion, regions)
 
     def _suggestion(self, entry: dict[str, Any] | None) -> Suggestion | None:

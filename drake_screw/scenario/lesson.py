@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -68,11 +68,11 @@ class DeskLesson:
             case {"do": str(action)} if action in self._can():
                 getattr(self, f"_{action}")()
             case {"hand": int(axis), "value": int() | float() as value} if self.leading:
-                if 0 <= axis < 6:
+                if 0 <= axis < 6 and isfinite(value):
                     self._hand[axis] = value
                     self._q_goal = None
             case {"joint": int(joint), "value": int() | float() as value} if self.leading:
-                if 0 <= joint < self.led.arm.n:
+                if 0 <= joint < self.led.arm.n and isfinite(value):
                     goal = self.led.q.copy() if self._q_goal is None else self._q_goal
                     goal[joint] = value
                     self._q_goal = goal
@@ -90,17 +90,19 @@ class DeskLesson:
             self._samples.append(self.led.q.copy())
         return moved
 
-    def take(self, folder: Path) -> None:
-        """Offer a recording from a folder."""
+    def take(self, folder: Path) -> str:
+        """Offer a recording from a folder; returns what became of it, for people."""
         arm, objects = self.led.arm, len(self._setup.objects)
         try:
             recording = read_recording(
                 folder, arm.joint_names, arm.lower, arm.upper, objects=objects
             )
+            self._offer(recording)
         except DrakeScrewError as error:
             self._message = str(error)
-            return
-        self._offer(recording)
+        else:
+            self._message = f"{folder.name}: {self._message}"
+        return self._message
 
     def state(self) -> dict[str, Any]:
         """What the panel shows."""
@@ -110,16 +112,17 @@ class DeskLesson:
         half = [REACH] * 3 + [np.pi] * 3
         stuck = "the arm cannot follow: a joint is at its limit, or it is stretched out"
         asked = place(self._suggestion, self._suggestion.regions or self._setup.regions)
+        spacing = 1e3 * self._setup.segmentation.spacing
         seconds = len(self._samples or ()) * PERIOD
         return {
             "title": f"{self._setup.scenario.name}: teach",
-            "headline": "thank you; the run goes on"
-            if self.over
-            else f"demonstration {self._number + 1} is wanted at {asked}",
+            "headline": f"demonstration {self._number + 1} is wanted at {asked}",
             "message": self._message or (stuck if self.led.stuck else ""),
             "clock": f"recording, {seconds:.1f} s" if self.recording_now else "",
-            "can": [] if self.over else self._can(),
-            "leading": self.leading and not self.over,
+            "hint": f"Move the hand by more than {spacing:.0f} mm while it turns: a turn on the "
+            "spot leaves no trace in a recording.",
+            "can": self._can(),
+            "leading": self.leading,
             "hand": [
                 {"name": n, "low": c - h, "high": c + h, "value": round(float(v), 5), "unit": u}
                 for n, c, h, v, u in zip(
@@ -190,10 +193,10 @@ class DeskLesson:
         self._inspector.draw(tried)
         self._segments = _lines(tried)
         self._message = (
-            f"{len(tried.guides)} guiding poses found; planned at the suggested place it "
-            f"{headline(tried)}"
+            f"{len(tried.guides)} guiding pose{'' if len(tried.guides) == 1 else 's'} found; "
+            f"planned at the suggested place it {headline(tried)}"
         )
-        self._offered = replace(recording, name=f"demo_{self._number + 1:02d}")
+        self._offered = recording
 
     def _accept(self) -> None:
         self.accepted, self.over = self._offered, True

@@ -25,7 +25,8 @@ from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.narration import describe
 from drake_screw.visualization import Scene
 from drake_screw.visualization.charts import work_area_map
-from drake_screw.visualization.inspector_panel import body, script_json
+from drake_screw.visualization.inspector_panel import body, map_words, script_json
+from drake_screw.visualization.lifetime import keep
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -57,14 +58,22 @@ class LiveView:
         setup: of the run.
         host: "localhost", or an address to listen on, so that others can look, too.
         port: of the page; any free one if None.
+        teach: address of the page where a person gives demonstrations, if there is one.
 
     Attributes:
         url: of the page.
     """
 
-    def __init__(self, setup: Setup, *, host: str = "localhost", port: int | None = None) -> None:
+    def __init__(
+        self,
+        setup: Setup,
+        *,
+        host: str = "localhost",
+        port: int | None = None,
+        teach: str = "",
+    ) -> None:
         self._setup = setup
-        self.meshcat = Meshcat(MeshcatParams(host=host, show_stats_plot=False))
+        self.meshcat = keep(Meshcat(MeshcatParams(host=host, show_stats_plot=False)))
         name = setup.scenario.name
         self.scene = Scene(
             self.meshcat, setup.robot, setup.table, setup.objects, setup.area, scenario=name
@@ -75,6 +84,7 @@ class LiveView:
         self.server = PanelServer(self.meshcat.port(), panel, name, host=host, port=port)
         self.url = self.server.url
         self._drawn = 0.0
+        self._teach = teach
         self._hand: tuple[Demonstration, ...] = ()
         goal = setup.goal
         self._state: dict[str, Any] = {
@@ -82,9 +92,11 @@ class LiveView:
             "headline": "starting",
             "details": "",
             "color": INK,
+            "teach": "",
             "goal": f"every region succeeds at least {goal.beta:.0%} of the time, measured to "
             f"{goal.epsilon:g} with confidence {1 - goal.delta:.0%}",
             "map": "",
+            "map_words": "",
             "rounds": [],
             "demonstrations": [],
         }
@@ -113,7 +125,18 @@ class LiveView:
         match event:
             case RoundStarted():
                 self._hand = event.demonstrations
-                self._say(headline=words, details="", color=INK)
+                known = self._state["demonstrations"]
+                given = [
+                    {"number": i + 1, "color": INK, "words": d.name}
+                    for i, d in enumerate(self._hand)
+                ]
+                self._say(
+                    headline=words,
+                    details="",
+                    color=INK,
+                    teach="",
+                    demonstrations=[*known, *given[len(known) :]],
+                )
             case RegionsEvaluated():
                 self.progress(event)
             case RoundFinished():
@@ -133,22 +156,22 @@ class LiveView:
                     headline=f"round {event.round + 1}: "
                     + ("certified" if verdict.certified else "not certified"),
                     details=f"weakest region {verdict.region}: "
-                    f"{event.regions.name(verdict.region)}; {verdict.reason}; "
-                    f"shown: {shown.statement}",
+                    f"{event.regions.name(verdict.region)}; {verdict.reason}",
                     color=color,
                     map=work_area_map(event, event.regions),
+                    map_words=f"after round {event.round + 1}; {map_words(event, shown)}",
                     rounds=[*self._state["rounds"], line],
                 )
             case DemonstrationRequested():
                 self.scene.show_suggestion(event.suggestion.x_y_yaw)
-                self._say(headline=words, color=INK)
+                self._say(headline=words, color=INK, teach=self._teach)
             case DemonstrationAdded():
                 line = {
                     "number": event.number + 1,
                     "color": INK,
                     "words": f"{event.recording.name}: {event.remark}",
                 }
-                self._say(demonstrations=[*self._state["demonstrations"], line])
+                self._say(demonstrations=[*self._state["demonstrations"], line], teach="")
             case Finished():
                 certified = event.status is Status.CERTIFIED
                 cause = Cause.SUCCESS if certified else Cause.JOINT_LIMIT
@@ -157,6 +180,7 @@ class LiveView:
                     headline=event.status.value,
                     details=f"{claim}{event.reason}",
                     color=OUTCOME_COLORS[cause],
+                    teach="",
                 )
 
     def close(self) -> None:

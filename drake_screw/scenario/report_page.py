@@ -10,6 +10,7 @@ import numpy as np
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.planning import Cause
+from drake_screw.scenario.certificate import statement
 from drake_screw.scenario.choice import Choice, choose
 from drake_screw.scenario.inspect import save_page
 from drake_screw.scenario.inspection import Inspection
@@ -25,6 +26,8 @@ from drake_screw.visualization.rounds import headline as round_headline
 PAGES = "inspect"
 WORST = 8
 """Regions listed for each round."""
+OTHERS = 2
+"""Instances of other regions that are pictured for each round."""
 
 
 def write_report(inspection: Inspection, folder: Path | None = None) -> Path:
@@ -65,8 +68,8 @@ def _head(inspection: Inspection) -> str:
     certified = bool(stated.get("certified"))
     color = OUTCOME_COLORS[Cause.SUCCESS if certified else Cause.JOINT_LIMIT]
     title = "Certificate" if certified else f"No certificate: {record['status']}"
-    lines = [stated.get("claim"), None if certified else record.get("reason")]
-    words = "".join(f"<br>{escape(str(line))}." for line in lines if line)
+    lines = statement(stated, str(record["reason"])) if stated else []
+    words = "".join(f"<br>{escape(line)}" for line in lines)
     block = scenario.coverage
     facts = [
         ("goal", f"every region succeeds at least {block.beta:g} of the time"),
@@ -96,7 +99,8 @@ def _round(inspection: Inspection, choice: Choice, linkage: Linkage, page: str) 
         f'<section id="round-{choice.round + 1}"><h2>{escape(round_headline(event)).capitalize()}'
         f"</h2><p>{escape(details(event, event.regions))}</p>"
         f"{_picture(folder / 'heat_map.png', 'heat map of the round')}{_regions(event)}"
-        f"{_instance(inspection, choice, linkage, page)}</section>\n"
+        f"{_instance(inspection, choice, linkage, page)}{_others(inspection, choice, linkage)}"
+        "</section>\n"
     )
 
 
@@ -142,6 +146,35 @@ def _instance(inspection: Inspection, choice: Choice, linkage: Linkage, page: st
         f"<h3>Demonstration {best.number + 1} there, joint by joint</h3>"
         f'<div class="attempt"><div>{joint_chart(best)}</div><div>{sketch}</div></div>'
     )
+
+
+def _others(inspection: Inspection, choice: Choice, linkage: Linkage) -> str:
+    """The earliest failing instance of each of the worst regions but the chosen one's, pictured."""
+    setup, event = inspection.setup, inspection.event(choice.round)
+    book, verdict = inspection.catalogue(choice.round), event.verdict
+    here = None if choice.instance is None else event.evaluation.region[choice.instance]
+    order = np.argsort(-np.nan_to_num(verdict.estimates, nan=-1.0), kind="stable").tolist()
+    parts = []
+    for region in order:
+        failing = book.of_region(region)
+        if region == here or len(failing) == 0 or failing[0] >= book.failing:
+            continue
+        instance = int(book.instance[failing[0]])
+        best = inspection.best(choice.round, instance)
+        if best is None:
+            continue
+        tried = inspection.attempt(choice.round, instance, best)
+        place = where(setup.area, event.evaluation.x_y_yaw[instance])
+        sketch = arm_sketch(tried, linkage, setup.area, setup.objects, setup.table)
+        parts.append(
+            f"<div><p><b>region {region}: {escape(place)}</b> (instance {instance})<br>"
+            f"demonstration {best + 1} {escape(headline(tried))}</p>{sketch}</div>"
+        )
+        if len(parts) == OTHERS:
+            break
+    if not parts:
+        return ""
+    return f'<h3>Elsewhere</h3><div class="others">{"".join(parts)}</div>'
 
 
 def _attempt(tried: Attempt) -> str:

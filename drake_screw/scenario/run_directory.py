@@ -7,12 +7,14 @@ import json
 import os
 import platform
 import shutil
-from collections.abc import Callable, Mapping
+import zlib
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -26,6 +28,17 @@ from drake_screw.tasks import Regions
 FORMAT = 1
 RUN, SCENARIO, LOG = "run.json", "scenario.yaml", "run.log"
 _ARRAYS = ("samples", "failures", "lower", "upper")
+_KINDS: dict[str, type | tuple[type, ...]] = {
+    "scenario": str,
+    "status": str,
+    "seed": int,
+    "rounds": list,
+    "demonstrations": list,
+    "hashes": dict,
+    "versions": dict,
+    "certificate": (dict, type(None)),
+}
+_REMEDY = "Restore it, or run the scenario again."
 
 
 class RunDirectory:
@@ -106,20 +119,24 @@ class RunDirectory:
                 file=path,
             )
         try:
-            record = json.loads(file.read_text())
-            found = record["format"]
-            if not {"status", "rounds", "demonstrations", "seed"} <= record.keys():
-                raise KeyError("keys are missing")
-        except (ValueError, KeyError, TypeError) as error:
+            record = json.loads(file.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise RunDirectoryError(f"damaged: {error}", remedy=_REMEDY, file=file) from error
+        if not isinstance(record, dict) or not isinstance(record.get("format"), int):
             raise RunDirectoryError(
-                f"damaged: {error}", remedy="Restore it, or run the scenario again.", file=file
-            ) from error
-        if found != FORMAT:
+                "not what a run writes: it has no number of its format", remedy=_REMEDY, file=file
+            )
+        if record["format"] != FORMAT:
+            writer = record.get("versions")
+            version = writer.get("drake-screw") if isinstance(writer, dict) else None
+            which = "" if version is None else f", drake-screw {version}"
             raise RunDirectoryError(
-                f"written in format {found}; this version reads format {FORMAT}",
-                remedy=f"Use the version that wrote it ({record.get('versions', {})}).",
+                f"written in format {record['format']}; this version reads format {FORMAT}",
+                remedy=f"Use the version that wrote it{which}.",
                 file=file,
             )
+        for message in _oddities(record):
+            raise RunDirectoryError(f"damaged: {message}", remedy=_REMEDY, file=file)
         return cls(path, record)
 
     def save(self, **changes: Any) -> None:
@@ -144,6 +161,7 @@ class RunDirectory:
             "name": recording.name,
             "folder": str(folder.relative_to(self.path)),
             "source": None if recording.source is None else str(recording.source),
+            "robot": recording.robot,
             "remark": remark,
             "notes": list(recording.notes),
         }
@@ -175,7 +193,11 @@ class RunDirectory:
         return self.path / f"round_{round + 1:02d}"
 
     def remembered_round(self, round: int) -> tuple[Evaluation, Verdict] | None:
-        """What a round found, if it is stored."""
+        """What a round found, if it is stored.
+
+        Raises:
+            RunDirectoryError: its instances are missing, cut off, or of another round.
+        """
         if round >= len(self.record["rounds"]):
             return None
         entry, file = self.record["rounds"][round], self.round_folder(round) / "instances.npz"
@@ -184,13 +206,48 @@ class RunDirectory:
             fields = dict(entry["verdict"])
             for name in _ARRAYS:
                 fields[name] = np.array(fields[name])
-            return evaluation, Verdict(**fields)
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            verdict = Verdict(**fields)
+            N, D = evaluation.outcomes.shape
+            if len(evaluation.x_y_yaw) != N or len(evaluation.region) != N:
+                raise ValueError("its columns are not equally long")
+            if entry["demonstrations"] != D:
+                raise ValueError(f"it has outcomes of {D} demonstrations, not as run.json says")
+        except FileNotFoundError as error:
             raise RunDirectoryError(
-                f"round {round + 1} is damaged: {error}",
-                remedy="Restore it, or run the scenario again.",
-                file=file,
+                f"round {round + 1} is damaged: the file is missing", remedy=_REMEDY, file=file
             ) from error
+        except (
+            OSError,
+            EOFError,
+            ValueError,
+            KeyError,
+            TypeError,
+            BadZipFile,
+            zlib.error,
+        ) as error:
+            words = f"no {error}" if isinstance(error, KeyError) else str(error).split(". ")[0]
+            raise RunDirectoryError(
+                f"round {round + 1} is damaged: {words}", remedy=_REMEDY, file=file
+            ) from error
+        return evaluation, verdict
+
+
+def _oddities(record: Mapping[str, Any]) -> Iterator[str]:
+    """What is not as `RunDirectory.create` and its changes leave it."""
+    for name, kind in _KINDS.items():
+        if name not in record:
+            yield f"no '{name}'"
+        elif not isinstance(record[name], kind):
+            yield f"'{name}' is {record[name]!r}"[:80]
+    if record.get("status") not in list(Status):
+        yield f"no run has the status '{record.get('status')}'"
+    for number, entry in enumerate(record.get("rounds", ()), start=1):
+        if not isinstance(entry, dict):
+            yield f"what it says of round {number} is {entry!r}"[:80]
+    wanted = {"name", "folder", "remark", "notes"}
+    for number, entry in enumerate(record.get("demonstrations", ()), start=1):
+        if not isinstance(entry, dict) or not wanted <= entry.keys():
+            yield f"what it says of demonstration {number} is incomplete"
 
 
 def write_text(file: Path, text: str) -> None:

@@ -23,8 +23,8 @@ from drake_screw.acquisition import (
     acquire,
 )
 from drake_screw.bandits import Verdict
-from drake_screw.demonstrations import Demonstration, Recording, read_recording
-from drake_screw.errors import RunDirectoryError
+from drake_screw.demonstrations import Demonstration, Recording
+from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.certificate import certificate
 from drake_screw.scenario.loader import dump_scenario, load_scenario
@@ -32,6 +32,7 @@ from drake_screw.scenario.narration import describe
 from drake_screw.scenario.pictures import draw_round, draw_run
 from drake_screw.scenario.run_directory import LOG, SCENARIO, RunDirectory, file_hash
 from drake_screw.scenario.schema import Scenario
+from drake_screw.visualization.lifetime import scratch
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ class Run:
         """Tell the stored events of a finished run again, and write nothing.
 
         Raises:
-            RunDirectoryError: the run has not finished.
+            RunDirectoryError: the run has not finished, or what is stored of it is not whole.
         """
         status = self.directory.record["status"]
         if status not in (Status.CERTIFIED, Status.INSUFFICIENT):
@@ -80,17 +81,52 @@ class Run:
                 remedy=f"Finish it first: drake-screw run --resume {self.directory.path}",
                 file=self.directory.path,
             )
-        yield from self._acquire(None)
+        rounds = 0
+        for event in self._acquire(None, told=True):
+            rounds += isinstance(event, RoundFinished)
+            if isinstance(event, Finished):
+                if event.status != status or rounds != len(self.directory.record["rounds"]):
+                    raise RunDirectoryError(
+                        f"damaged: it ends as '{event.status}' after {rounds} rounds; run.json "
+                        f"says '{status}' after {len(self.directory.record['rounds'])}",
+                        remedy="Restore it, or run the scenario again.",
+                        file=self.directory.path,
+                    )
+                event = replace(event, reason=self.directory.record["reason"])
+            yield event
 
-    def _acquire(self, progress: Callable[[RegionsEvaluated], None] | None) -> Iterator[Event]:
+    def remembered(self, round: int) -> tuple[Evaluation, Verdict] | None:
+        """What the directory knows of a round (from 0); None if it is not there.
+
+        Raises:
+            RunDirectoryError: it is damaged, or does not belong to the scenario beside it.
+        """
+        found = self.directory.remembered_round(round)
+        if found is not None:
+            evaluation, verdict = found
+            K = evaluation.partition(self.setup.regions).K
+            if len(verdict.samples) != K or (evaluation.region >= K).any():
+                raise RunDirectoryError(
+                    f"round {round + 1} does not fit the scenario beside it",
+                    remedy="Restore the directory, or run the scenario again.",
+                    file=self.directory.round_folder(round),
+                )
+        return found
+
+    def _acquire(
+        self, progress: Callable[[RegionsEvaluated], None] | None, *, told: bool = False
+    ) -> Iterator[Event]:
+        """The loop; where it is just `told` again, nobody is asked and nothing is evaluated."""
         setup, scenario = self.setup, self.setup.scenario
         evaluator = make_evaluator(setup, progress)
 
         def evaluate(
             round: int, demonstrations: tuple[Demonstration, ...], attempt: int
         ) -> tuple[Evaluation, Verdict]:
-            remembered = self.directory.remembered_round(round)
+            remembered = self.remembered(round)
             if remembered is None:
+                if told:
+                    raise self._lacks(f"round {round + 1}")
                 return evaluator.evaluate(round, demonstrations, attempt)
             if isinstance(evaluator, TreeEvaluator):
                 evaluator.remember(remembered[0])
@@ -98,13 +134,15 @@ class Run:
 
         initial = setup.initial
         if not isinstance(initial, int):
+            if told and len(initial) > len(self.directory.record["demonstrations"]):
+                raise self._lacks("the initial demonstrations")
             initial = tuple(
                 self._kept(i, recording, "given in the scenario")
                 for i, recording in enumerate(initial)
             )
         return acquire(
             evaluate,
-            _KeptTeacher(self),
+            _KeptTeacher(self, told),
             setup.learn,
             setup.regions,
             initial=initial,
@@ -124,15 +162,11 @@ class Run:
 
     def _stored(self, number: int) -> tuple[Recording, str]:
         """A recording of the run directory, and what was remarked on it."""
+        if number >= len(self.directory.record["demonstrations"]):
+            raise self._lacks(f"demonstration {number + 1}")
         entry = self.directory.record["demonstrations"][number]
-        arm = self.setup.workcell.arm
-        stored = read_recording(
-            self.directory.path / entry["folder"],
-            arm.joint_names,
-            arm.lower,
-            arm.upper,
-            objects=len(self.setup.objects),
-        )
+        recorder = self.setup.recorder_of(entry.get("robot"))
+        stored = recorder.read(self.directory.path / entry["folder"])
         return replace(stored, name=entry["name"]), entry["remark"]
 
     def _record(self, event: Event) -> None:
@@ -141,7 +175,8 @@ class Run:
             if event.round >= len(self.directory.record["rounds"]):
                 self.directory.add_round(event, event.regions, draw_round(self.setup))
         elif isinstance(event, Finished):
-            draw_run(self.setup, self._rounds(event), self.directory.path)
+            with scratch():
+                draw_run(self.setup, self._rounds(event), self.directory.path)
             self.directory.save(
                 status=event.status.value,
                 reason=event.reason,
@@ -151,7 +186,14 @@ class Run:
 
     def _rounds(self, finished: Finished) -> list[RoundFinished]:
         """The run's rounds, told again from its directory."""
-        return [e for e in self._acquire(None) if isinstance(e, RoundFinished)]
+        return [e for e in self._acquire(None, told=True) if isinstance(e, RoundFinished)]
+
+    def _lacks(self, what: str) -> RunDirectoryError:
+        return RunDirectoryError(
+            f"damaged: {what} is missing",
+            remedy="Restore it, or run the scenario again.",
+            file=self.directory.path,
+        )
 
     def _log(self, text: str) -> None:
         stamp = datetime.now().astimezone().isoformat(timespec="seconds")
@@ -164,6 +206,7 @@ class _KeptTeacher:
     """Asks the scenario's teacher only what the run directory does not know yet."""
 
     run: Run
+    told: bool
 
     def demonstrate(
         self,
@@ -176,6 +219,8 @@ class _KeptTeacher:
         run = self.run
         if number < len(run.directory.record["demonstrations"]):
             return Lesson(*run._stored(number))
+        if self.told:
+            return Lesson(None, "the teacher had no more")
         lesson = run.setup.teacher.demonstrate(suggestion, number=number, used=used, rng=rng)
         if lesson.recording is None:
             return lesson
@@ -210,7 +255,7 @@ def new_run(scenario: Scenario, output: Path | None = None) -> Run:
         "delta": scenario.coverage.delta,
         "regions": setup.regions.K if setup.tree is None else "adaptive",
         "model": str(model),
-        "hashes": {"model": file_hash(model)},
+        "hashes": {name: file_hash(file) for name, file in _models(setup).items()},
     }
     return Run(setup, RunDirectory.create(output, scenario.name, dump_scenario(scenario), facts))
 
@@ -222,14 +267,30 @@ def open_run(path: Path) -> Run:
         RunDirectoryError: it is not one, is damaged, or the robot model is not the same any more.
     """
     directory = RunDirectory.open(path)
-    setup = Setup(load_scenario(path / SCENARIO))
-    if file_hash(setup.workcell.model_file) != directory.record.get("hashes", {}).get("model"):
+    try:
+        setup = Setup(load_scenario(path / SCENARIO))
+    except ScenarioError as error:
+        missing = not (path / SCENARIO).is_file()
         raise RunDirectoryError(
-            f"the robot model {setup.workcell.model_file} has changed since this run",
-            remedy="Put the model back as it was, or run the scenario again.",
-            file=path,
-        )
+            f"damaged: {'the file is missing' if missing else error.message}",
+            remedy="Restore the scenario of this run, or run it again from the original.",
+            file=path / SCENARIO,
+            line=error.line,
+        ) from error
+    for name, model in _models(setup).items():
+        if file_hash(model) != directory.record["hashes"].get(name):
+            raise RunDirectoryError(
+                f"the robot model {model} has changed since this run",
+                remedy="Put the model back as it was, or run the scenario again.",
+                file=path,
+            )
     return Run(setup, directory)
+
+
+def _models(setup: Setup) -> dict[str, Path]:
+    """The model files that a run depends on."""
+    other = setup.recorder.model_file
+    return {"model": setup.workcell.model_file, **({} if other is None else {"recorded_on": other})}
 
 
 def resumable(run: Run) -> Run:
@@ -253,5 +314,6 @@ def redraw(run: Run) -> list[RoundFinished]:
     rounds = [e for e in run.replay() if isinstance(e, RoundFinished)]
     for event in rounds:
         draw_round(run.setup)(event, run.directory.round_folder(event.round) / "heat_map")
-    draw_run(run.setup, rounds, run.directory.path)
+    with scratch():
+        draw_run(run.setup, rounds, run.directory.path)
     return rounds

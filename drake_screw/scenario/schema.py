@@ -194,6 +194,28 @@ class TeacherBlock:
 
 
 @dataclass(frozen=True, kw_only=True)
+class RecordedOnBlock:
+    model: ModelName = key(
+        "shipped model's name, or the path of a model file, relative to the scenario file"
+    )
+    joints: tuple[str, ...] = key(
+        "names of that arm's joints, from base to hand; the recordings have a column for each"
+    )
+    end_effector: str = key(
+        "name of that arm's frame which `robot.end_effector` stands for: same axes, same grip"
+    )
+    base: str = key(
+        "name of the frame in which the recordings have the objects' poses; its z points up",
+        default="base",
+    )
+    parked: dict[str, float] = key(
+        "where other joints rested; joints not named rested at the model's default",
+        unit="rad",
+        default_factory=dict,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class SegmentationBlock:
     spacing: float = key(
         "smallest distance between poses kept of a recording", unit="m", default=0.005, above=0
@@ -246,11 +268,17 @@ class Scenario:
         "how many demonstrations there may be", default=DemonstrationsBlock()
     )
     teacher: TeacherBlock = key("where demonstrations come from")
+    recorded_on: RecordedOnBlock | None = key(
+        "the arm that a recorded teacher's recordings, and those listed in "
+        "`demonstrations.initial`, were made on, where it is not `robot`",
+        default=None,
+    )
     segmentation: SegmentationBlock = key(
         "how recordings are cut into constant screws", default=SegmentationBlock()
     )
     planner: PlannerBlock = key("how plans are computed", default=PlannerBlock())
     seed: int = key("seed of all random draws", default=0, at_least=0)
+    meshcat: bool = key("whether a run shows itself in the browser as it goes on", default=False)
     source: Path | None = field(default=None, compare=False)
 
     @property

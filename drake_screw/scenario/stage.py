@@ -81,7 +81,6 @@ def state(
             "where": where(inspection.setup.area, here),
             "which": which(inspection, choice),
         }
-    statement = sample(event.evaluation, MOST_DOTS).statement
     return {
         "live": live,
         "title": inspection.setup.scenario.name,
@@ -99,5 +98,5 @@ def state(
         "steps": list(steps(inspection, choice)),
         "attempts": attempts,
         "chosen": choice.demonstration,
-        **round_state(event, regions, here, f"shown in 3-D: {statement}"),
+        **round_state(event, regions, here, sample(event.evaluation, MOST_DOTS)),
     }

@@ -8,6 +8,7 @@ from pathlib import Path
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
+from drake_screw.errors import ModelError
 from drake_screw.robot import RobotConfig
 from drake_screw.robot.workcell import add_robot
 from drake_screw.scenario.schema import ModelName, Scenario
@@ -17,10 +18,12 @@ def swap_model(scenario: Scenario, model: Path) -> Scenario:
     """The scenario on another robot model.
 
     The model must have the arm's joints, the base and the end effector. Other joints that are
-    parked and that it lacks (those of a second arm, say) are left out.
+    parked and that it lacks (those of a second arm, say) are left out. The robot that recordings
+    were made on stays as it is.
 
     Raises:
-        ModelError: the model cannot be read or lacks the base.
+        ModelError: the model cannot be read or lacks the base, or it is one of the robot that the
+            recordings were made on.
     """
     block = replace(scenario.robot, model=ModelName(str(model.resolve())))
     plant = MultibodyPlant(0.0)
@@ -29,5 +32,13 @@ def swap_model(scenario: Scenario, model: Path) -> Scenario:
         parser, RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
     )
     names = {plant.get_joint(i).name() for i in plant.GetJointIndices()}
+    other = scenario.recorded_on
+    if other is not None and set(other.joints) <= names and not set(block.joints) <= names:
+        raise ModelError(
+            f"no joint '{next(name for name in block.joints if name not in names)}' in this model; "
+            "it has the joints of the robot that recordings were made on",
+            remedy=f"Change that robot's model with: --set recorded_on.model={model}",
+            file=model,
+        )
     parked = {name: value for name, value in block.parked.items() if name in names}
     return replace(scenario, robot=replace(block, parked=parked))

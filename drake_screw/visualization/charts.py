@@ -28,7 +28,7 @@ STATUS_COLORS = {
 }
 """Of screw segments; the ghost and the joint at its limit have that of what failed."""
 
-MAP_DOTS = 1_200
+MAP_DOTS = 2_000
 _LINE, _FAINT = "#2b4c7e", "#c9cbd3"
 
 
@@ -129,7 +129,7 @@ def work_area_map(
         event: the round.
         regions: of the run.
         here: (k, 3) an instance to mark.
-        dots: most failing instances to draw.
+        dots: of so many instances, drawn at random, those that fail are drawn.
     """
     drawn = cells(regions, event.verdict.estimates)
     (x0, y0), (x1, y1) = drawn.lower.min(axis=0), drawn.upper.max(axis=0)
@@ -147,10 +147,10 @@ def work_area_map(
             f'height="{1e3 * (c - a):.1f}" fill="{color}" class="cell" data-region="{region}">'
             f"<title>region {region}: {event.verdict.estimates[region]:.2%} fail</title></rect>"
         )
-    shown = sample(event.evaluation, dots * 4)
+    shown = sample(event.evaluation, dots)
     for cause, color in OUTCOME_COLORS.items():
         chosen = (shown.cause == cause) & (cause != Cause.SUCCESS)
-        points = shown.x_y_yaw[chosen, drawn.object, :2][:dots]
+        points = shown.x_y_yaw[chosen, drawn.object, :2]
         path = "".join(f"M{u:.0f} {v:.0f}h0" for u, v in (place(x, y) for x, y in points))
         if path:
             parts.append(

@@ -21,10 +21,10 @@ from drake_screw.visualization.attempt import (
     headline,
     unit,
 )
-from drake_screw.visualization.charts import STATUS_COLORS, joint_strip, work_area_map
+from drake_screw.visualization.charts import MAP_DOTS, STATUS_COLORS, joint_strip, work_area_map
 from drake_screw.visualization.inspector import AXIS, Drawn
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES
-from drake_screw.visualization.rounds import Round
+from drake_screw.visualization.rounds import Round, Sample, sample
 from drake_screw.visualization.rounds import headline as round_headline
 
 KEY = (
@@ -93,14 +93,20 @@ def attempt_entry(number: int, name: str, outcome: Outcomes, drawn: Drawn | None
 
 
 def round_state(
-    event: Round, regions: Regions, here: Array | None, statement: str
+    event: Round, regions: Regions, here: Array | None, shown: Sample
 ) -> dict[str, Any]:
-    """What the panel says of a round; `here` (k, 3) is marked on its map."""
+    """What the panel says of a round; `here` (k, 3) is marked on its map, `shown` is in 3-D."""
     return {
         "headline": round_headline(event),
         "map": work_area_map(event, regions, here=here),
-        "map_words": f"dots: failing instances; {statement}",
+        "map_words": map_words(event, shown),
     }
+
+
+def map_words(event: Round, shown: Sample) -> str:
+    """What the dots of `work_area_map` are, and how many of the instances 3-D has."""
+    words = f"dots: what fails of {sample(event.evaluation, MAP_DOTS).statement}"
+    return words if len(shown.cause) == shown.total else f"{words} (in 3-D: {len(shown.cause):,})"
 
 
 def where(area: WorkArea, x_y_yaw: Array) -> str:

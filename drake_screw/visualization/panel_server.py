@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import queue
 import socket
+import sys
 import threading
 import urllib.error
 import urllib.request
@@ -23,13 +24,19 @@ from drake_screw.visualization.inspector_panel import with_panel
 
 WAIT = 20.0
 """s. For so long a page waits for a change before it asks again."""
+LAST = 1.0
+"""s. For so long the last state is kept for pages that do not ask for it just then."""
 
 EVERYWHERE = ("0.0.0.0", "::")
 """Addresses that stand for all of this machine's."""
 
 _SOCKET = """<script>
+// Meshcat would connect again to whatever program comes next on its port, and load its page.
+let connected = false;
 window.WebSocket = class extends WebSocket {
   constructor(url) {
+    if (connected) throw "the program has ended";
+    connected = true;
     const there = new URL(url);
     there.port = "PORT"; there.pathname = "/"; there.search = "";
     super(there.href);
@@ -39,6 +46,33 @@ window.WebSocket = class extends WebSocket {
 };
 </script>
 """
+
+
+def check_address(host: str, port: int | None) -> None:
+    """Find out whether a page can be served, before anything else is begun.
+
+    Raises:
+        DrakeScrewError: the port is taken or the address is not this machine's.
+    """
+    try:
+        with socket.create_server((host, port or 0), reuse_port=False):
+            pass
+    except (OSError, OverflowError) as error:
+        raise _unusable(host, port, error) from error
+
+
+def warning(host: str) -> str | None:
+    """What to tell people before a page is served on an address; None on localhost."""
+    if host == "localhost":
+        return None
+    return f"warning: served on {host} to everyone who can reach this machine, without a password"
+
+
+def _unusable(host: str, port: int | None, error: Exception) -> DrakeScrewError:
+    return DrakeScrewError(
+        f"cannot serve on {host}" + (f", port {port}" if port else "") + f": {error}",
+        remedy="Choose another --port, or leave it out for any free one.",
+    )
 
 
 class PanelServer:
@@ -72,6 +106,7 @@ class PanelServer:
         self._changed = threading.Condition()
         self._messages: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         self._closed = False
+        self._waiting, self._sent = 0, 0
         here = "localhost" if host in EVERYWHERE else host
         meshcat = f"http://{here}:{meshcat_port}"
         server = self
@@ -89,13 +124,9 @@ class PanelServer:
                 pass
 
         try:
-            self._server = ThreadingHTTPServer((host, port or 0), Handler)
+            self._server = _Server((host, port or 0), Handler)
         except (OSError, OverflowError) as error:
-            raise DrakeScrewError(
-                f"cannot serve on {host}, port {port}: {error}",
-                remedy="Choose another --port, or leave it out for any free one.",
-            ) from error
-        self._server.daemon_threads = True
+            raise _unusable(host, port, error) from error
         shown = socket.gethostname() if host in EVERYWHERE else host
         self.url = f"http://{shown}:{self._server.server_address[1]}/"
         threading.Thread(target=self._server.serve_forever, daemon=True).start()
@@ -115,24 +146,35 @@ class PanelServer:
             return None
 
     def close(self) -> None:
-        """Stop serving."""
+        """Stop serving once open pages have the last state; closed ones are not waited for."""
+
+        def told() -> bool:
+            return self._waiting == 0 and self._sent in (0, self._version)
+
         with self._changed:
             self._closed = True
             self._changed.notify_all()
+            self._changed.wait_for(told, LAST)
         self._server.shutdown()
         self._server.server_close()
 
     def _get(self, request: BaseHTTPRequestHandler, meshcat: str, panel: str, title: str) -> None:
         place = urlsplit(request.path)
         if place.path == "/state":
-            after = int(parse_qs(place.query).get("after", ["0"])[0])
+            given = parse_qs(place.query).get("after", ["0"])[0]
+            after = int(given) if given.isdecimal() else 0
             with self._changed:
+                self._waiting += 1
                 self._changed.wait_for(lambda: self._closed or self._version > after, WAIT)
-                if self._version <= after:
-                    _answer(request, 204, "application/json", b"")
-                    return
-                text = b'{"version":%d,"state":%b}' % (self._version, self._state)
-            _answer(request, 200, "application/json", text)
+                version, new = self._version, self._version > after
+                text = b'{"version":%d,"state":%b}' % (self._version, self._state) if new else b""
+            try:
+                _answer(request, 200 if new else 204, "application/json", text)
+            finally:
+                with self._changed:
+                    self._waiting -= 1
+                    self._sent = version
+                    self._changed.notify_all()
             return
         try:
             with urllib.request.urlopen(meshcat + request.path) as answer:
@@ -161,6 +203,15 @@ class PanelServer:
             return
         self._messages.put(message)
         _answer(request, 204, "text/plain", b"")
+
+
+class _Server(ThreadingHTTPServer):
+    daemon_threads = True
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """A page that was closed is nothing to tell people about."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
 
 
 def _answer(request: BaseHTTPRequestHandler, code: int, kind: str, content: bytes) -> None:

@@ -145,6 +145,10 @@ class Scene:
             self.meshcat.Delete(f"{_round_path(max(self._slides))}/next")
         self._draw_suggestion("/progress/next", x_y_yaw)
 
+    def clear_suggestion(self) -> None:
+        """Let no place glow."""
+        self.meshcat.Delete("/progress/next")
+
     def save_html(self, path: str | Path) -> Path:
         """Write the scene as one page that needs no network, with a legend.
 
@@ -173,8 +177,8 @@ class Scene:
         lower, upper = self._area.lower[:, :2].min(axis=0), self._area.upper[:, :2].max(axis=0)
         middle, z = (lower + upper) / 2.0, float(self._area.z.min())
         size = max(float(np.linalg.norm(upper - lower)), 0.6)
-        target = np.array([*(middle * [0.8, 0.45]), z + 0.11 * size])
-        self.meshcat.SetCameraPose(target + size * np.array([1.0, -0.15, 0.75]), target)
+        target = np.array([*(middle * [0.8, 0.45]), z + 0.14 * size])
+        self.meshcat.SetCameraPose(target + size * np.array([1.12, -0.15, 0.84]), target)
 
     def _draw_tiles(self, path: str, drawn: Cells, rates: Array) -> float:
         """The regions coloured by failure rates (K,); returns the height they lie at."""

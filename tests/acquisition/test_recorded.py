@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -58,3 +60,36 @@ def test_a_request_may_bring_its_own_regions(teacher):
     lesson = teacher.demonstrate(suggestion, number=0, used=(), rng=np.random.default_rng(0))
     assert lesson.recording.name == "elsewhere"
     assert "nearest unused recording of region 0" in lesson.remark
+
+
+class Elsewhere:
+    """Of another robot, whose world is shifted by 0.3 m; named recordings work."""
+
+    def __init__(self, *working: str) -> None:
+        self.working = working
+
+    def seen(self, recording):
+        X_WO = recording.X_WO.copy()
+        X_WO[:, 0, 3] += 0.3
+        return X_WO
+
+    def works(self, recordings, x_y_yaw):
+        return np.array([recording.name in self.working for recording in recordings])
+
+
+def test_of_another_robots_recordings_those_that_work_come_first(teacher):
+    foreign = replace(teacher, foreign=Elsewhere("far", "elsewhere"))
+    lesson = ask(foreign, 0.6, 0.2)
+    assert lesson.recording.name == "elsewhere"
+    assert lesson.remark == (
+        "of the unused recordings that work there, the nearest, 15 cm from the suggestion"
+    )
+    assert ask(foreign, 0.6, 0.2, used=LIBRARY[2:]).recording.name == "far"
+
+
+def test_where_none_works_the_nearest_is_given_though_it_stood_outside_the_work_area(teacher):
+    lesson = ask(replace(teacher, foreign=Elsewhere()), 0.99, 0.1)
+    assert lesson.recording.name == "near"
+    assert "no unused recording works there" in lesson.remark
+    assert not teacher.regions.area.contains([[1.2, 0.1, 0.0]])
+    assert ask(replace(teacher, foreign=Elsewhere("far")), 0.99, 0.1).recording.name == "far"

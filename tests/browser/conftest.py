@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import re
@@ -20,7 +21,7 @@ from matplotlib.image import imread
 
 from tests.small_runs import finished_run
 
-__all__ = ["browser", "finished_run"]
+__all__ = ["browser", "finished_run", "tidy"]
 
 FLAGS = (
     "--headless=new",
@@ -32,7 +33,7 @@ FLAGS = (
     "--hide-scrollbars",
     "--window-size=1200,900",
 )
-PATIENCE = 20.0
+PATIENCE = 60.0
 
 
 class Browser:
@@ -54,7 +55,17 @@ class Browser:
         return self.ask("return document.querySelector(arguments[0])?.textContent ?? ''", selector)
 
     def click(self, selector: str) -> None:
-        self.driver.find_element("css selector", selector).click()
+        """Click an element, found anew where a new state of the panel has just replaced it."""
+        from selenium.common.exceptions import StaleElementReferenceException
+
+        def clicked() -> bool:
+            try:
+                self.driver.find_element("css selector", selector).click()
+            except StaleElementReferenceException:
+                return False
+            return True
+
+        self.until(clicked)
 
     def until(self, condition: Callable[[], Any]) -> Any:
         end = time.monotonic() + PATIENCE
@@ -137,6 +148,12 @@ class Browser:
     def complaints(self) -> list[str]:
         """Errors on the page's console."""
         return [e["message"] for e in self.driver.get_log("browser") if e["level"] == "SEVERE"]
+
+
+@pytest.fixture(autouse=True)
+def tidy() -> None:
+    """Meshcats that other tests left behind must not end in a page's thread."""
+    gc.collect()
 
 
 @pytest.fixture(scope="session")

@@ -155,6 +155,7 @@ def test_the_live_page(browser, finished_run, inspection) -> None:
         browser.until(lambda: browser.text("#headline"))
         browser.until(lambda: browser.node("attempts/01/segments/01"))
         assert "suggested place" in browser.text("#which")
+        assert "instances" in browser.text("#map-words")
         browser.click("[data-step=earliest]")
         browser.until(lambda: "failing, 1 of" in browser.text("#which"))
         before = browser.text("#where-it-is")

@@ -108,7 +108,7 @@ def test_a_demonstration_is_given_by_clicks_alone(browser) -> None:
         )
         assert browser.text("#arm tr:nth-child(1) td:nth-child(3)") == joint
         browser.click("#stop")
-        browser.until(lambda: "guiding poses found" in browser.text("#message"))
+        browser.until(lambda: "found; planned" in browser.text("#message"))
         browser.until(lambda: browser.node("attempts/01/segments/01"))
         assert browser.driver.find_elements("css selector", "#segments li")
         browser.click("#repeat")
@@ -122,7 +122,7 @@ def test_a_demonstration_is_given_by_clicks_alone(browser) -> None:
             )
         )
         browser.click("#stop")
-        browser.until(lambda: "guiding poses found" in browser.text("#message"))
+        browser.until(lambda: "found; planned" in browser.text("#message"))
         browser.click("#accept")
         rest = process.stdout.read()
         assert "demo_01 led by hand, 0 cm from the suggestion" in rest

@@ -6,6 +6,8 @@ import csv
 import json
 import re
 import shutil
+import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,11 +15,15 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from drake_screw import cli
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause
 from drake_screw.scenario.choice import changed, choose, steps
 from drake_screw.scenario.inspect import inspect, instance_table
 from drake_screw.scenario.inspection import open_inspection
+from drake_screw.scenario.runner import open_run
+from drake_screw.scenario.stage import Stage
+from drake_screw.visualization.lifetime import keep
 from tests.small_runs import finished_run
 
 __all__ = ["finished_run"]
@@ -177,6 +183,24 @@ def damage_instances(folder: Path) -> None:
     file.write_bytes(file.read_bytes()[:-200])
 
 
+def empty_instances(folder: Path) -> None:
+    (folder / "round_02" / "instances.npz").write_bytes(b"")
+
+
+def spoil_instances(folder: Path) -> None:
+    file = folder / "round_02" / "instances.npz"
+    data = bytearray(file.read_bytes())
+    data[5000:5200] = bytes(200)
+    file.write_bytes(bytes(data))
+
+
+def shorten_a_column(folder: Path) -> None:
+    file = folder / "round_02" / "instances.npz"
+    with np.load(file) as data:
+        arrays = {name: data[name] for name in data.files}
+    np.savez(file, **arrays | {"region": arrays["region"][:5]})
+
+
 def damage_suggestion(folder: Path) -> None:
     record = json.loads((folder / "run.json").read_text())
     del record["rounds"][1]["next_demonstration"]["objects"]["bowl"]
@@ -192,12 +216,138 @@ def swap_rounds(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "damage", [damage_instances, damage_suggestion, remove_instances, swap_rounds]
+    "damage",
+    [
+        damage_instances,
+        empty_instances,
+        spoil_instances,
+        shorten_a_column,
+        damage_suggestion,
+        remove_instances,
+        swap_rounds,
+    ],
 )
 def test_a_damaged_round(copy, damage) -> None:
     damage(copy)
     with pytest.raises(RunDirectoryError, match="round 2"):
         choose(open_inspection(copy), 1)
+
+
+def rewritten(**changes: object):
+    def change(folder: Path) -> None:
+        record = json.loads((folder / "run.json").read_text())
+        (folder / "run.json").write_text(json.dumps(record | changes))
+
+    return change
+
+
+def without(name: str):
+    def change(folder: Path) -> None:
+        record = json.loads((folder / "run.json").read_text())
+        del record[name]
+        (folder / "run.json").write_text(json.dumps(record))
+
+    return change
+
+
+def cut(name: str, kept: int):
+    def change(folder: Path) -> None:
+        (folder / name).write_bytes((folder / name).read_bytes()[:kept])
+
+    return change
+
+
+def removed(name: str):
+    def change(folder: Path) -> None:
+        (folder / name).unlink()
+
+    return change
+
+
+def without_a_demonstration(folder: Path) -> None:
+    record = json.loads((folder / "run.json").read_text())
+    record["demonstrations"].pop()
+    (folder / "run.json").write_text(json.dumps(record))
+
+
+def with_other_regions(folder: Path) -> None:
+    text = (folder / "scenario.yaml").read_text()
+    assert "{x: 4, y: 4}" in text
+    (folder / "scenario.yaml").write_text(text.replace("{x: 4, y: 4}", "{x: 2, y: 4}"))
+
+
+@pytest.mark.parametrize(
+    ("damage", "expected"),
+    [
+        (removed("run.json"), "has no run.json"),
+        (cut("run.json", 0), r"run\.json: damaged"),
+        (cut("run.json", 500), r"run\.json: damaged"),
+        (rewritten(format=2), r"format 2; .* format 1\n.*drake-screw \d"),
+        (rewritten(format="x"), "no number of its format"),
+        (without("rounds"), "no 'rounds'"),
+        (without("hashes"), "no 'hashes'"),
+        (rewritten(rounds=["a", "b"]), "of round 1 is 'a'"),
+        (rewritten(demonstrations=[{}]), "demonstration 1 is incomplete"),
+        (rewritten(status="happy"), "no run has the status 'happy'"),
+        (rewritten(certificate=3), "'certificate' is 3"),
+        (rewritten(hashes={"model": "0"}), "has changed since this run"),
+        (removed("scenario.yaml"), r"scenario\.yaml: damaged: the file is missing"),
+        (cut("scenario.yaml", 0), r"scenario\.yaml: damaged: the file is empty"),
+        (cut("scenario.yaml", 300), r"scenario\.yaml:\d+: damaged: not valid YAML"),
+        (with_other_regions, "does not fit the scenario beside it"),
+        (without_a_demonstration, "damaged: (demonstration 2 is missing|it ends as)"),
+        (damage_instances, "round 2 is damaged"),
+        (empty_instances, "round 2 is damaged"),
+        (spoil_instances, "round 2 is damaged"),
+        (shorten_a_column, "columns are not equally long"),
+        (remove_instances, "round 2 is damaged: the file is missing"),
+    ],
+)
+@pytest.mark.parametrize("verb", ["inspect", "report"])
+def test_a_damaged_directory_gives_one_message(copy, verb, damage, expected, monkeypatch, capsys):
+    damage(copy)
+    before = sorted(copy.rglob("*"))
+    options = ["--html", str(copy.parent / "page.html")] if verb == "inspect" else []
+    monkeypatch.setattr(sys, "argv", ["drake-screw", verb, str(copy), *options])
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    out, err = capsys.readouterr()
+    assert end.value.code == 2
+    assert re.search(expected, err), err
+    assert err.count("error: ") == 1
+    assert out == ""
+    assert "Traceback" not in err
+    assert sorted(copy.rglob("*")) == before
+
+
+def test_a_run_is_told_again_as_it_ended(finished_run) -> None:
+    *_, last = open_run(finished_run).replay()
+    record = json.loads((finished_run / "run.json").read_text())
+    assert (last.status, last.reason) == (record["status"], record["reason"])
+
+
+def test_half_a_million_instances_are_thinned_and_open_quickly(inspection, monkeypatch) -> None:
+    event = inspection.event(1)
+    evaluation = event.evaluation
+    repeat = np.resize(np.arange(len(evaluation.region)), 516_928)
+    large = replace(
+        evaluation,
+        x_y_yaw=evaluation.x_y_yaw[repeat],
+        region=evaluation.region[repeat],
+        outcomes=evaluation.outcomes[repeat],
+    )
+    other = open_inspection(inspection.run.directory.path)
+    monkeypatch.setattr(other, "event", lambda round: replace(event, evaluation=large))
+    begun = time.process_time()
+    stage = Stage(other)
+    keep(stage.meshcat)
+    state = stage.show(choose(other, 1), live=True)
+    assert time.process_time() - begun < 5.0
+    assert state["map_words"].endswith(
+        "2,000 of 516,928 instances, drawn at random (in 3-D: 6,000)"
+    )
+    assert len(json.dumps(state)) < 500_000
+    assert len(stage.meshcat.StaticHtml()) < 10e6
 
 
 def test_new_rounds_of_a_running_run_are_found(copy) -> None:

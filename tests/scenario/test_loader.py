@@ -21,6 +21,7 @@ from drake_screw.scenario.schema import (
     Interval,
     ObjectBlock,
     PlannerBlock,
+    RecordedOnBlock,
     RegionsBlock,
     RobotBlock,
     Scenario,
@@ -352,7 +353,8 @@ def test_unknown_name_lists_the_shipped_ones() -> None:
     error = error_of("pourng")
     assert error.message == "no scenario 'pourng'"
     assert error.remedy is not None
-    assert error.remedy.startswith("Did you mean 'pouring'? Shipped scenarios: pouring, scooping.")
+    shipped = "pouring, pouring_iiwa, scooping"
+    assert error.remedy.startswith(f"Did you mean 'pouring'? Shipped scenarios: {shipped}.")
 
 
 def test_missing_file_suggests_its_neighbour(write: Callable[..., Path]) -> None:
@@ -361,7 +363,7 @@ def test_missing_file_suggests_its_neighbour(write: Callable[..., Path]) -> None
     error = error_of(wrong)
     assert error.message == f"no file '{wrong}'"
     assert f"Did you mean '{file}'? " in (error.remedy or "")
-    assert "pouring, scooping" in (error.remedy or "")
+    assert "pouring, pouring_iiwa, scooping" in (error.remedy or "")
 
 
 def test_missing_file_suggests_a_shipped_name() -> None:
@@ -382,7 +384,7 @@ def test_other_files_and_models_are_found_by_name(
     monkeypatch.chdir(file.parent)
     file.rename("plain")
     assert load_scenario("plain").name == "small"
-    assert {"pouring", "scooping"} <= set(list_resources("scenarios"))
+    assert {"pouring", "pouring_iiwa", "scooping"} <= set(list_resources("scenarios"))
     with pytest.raises(ModelError, match="no model 'baxterr'"):
         find_resource("models", "baxterr", MODEL_SUFFIXES)
 
@@ -548,6 +550,16 @@ def scenarios(draw: st.DrawFn) -> Scenario:
                     TeacherBlock(kind="recorded", folder=Path("/some/where")),
                     TeacherBlock(kind="simulated", motion="scooping"),
                 ]
+            )
+        ),
+        recorded_on=draw(
+            st.none()
+            | st.builds(
+                RecordedOnBlock,
+                model=st.sampled_from(["baxter", "/a b/arm.sdf"]),
+                joints=st.lists(texts, min_size=1, max_size=3, unique=True).map(tuple),
+                end_effector=texts,
+                base=texts,
             )
         ),
         seed=draw(st.integers(0, 2**128)),

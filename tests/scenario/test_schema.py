@@ -19,6 +19,7 @@ from drake_screw.scenario.schema import (
     Interval,
     ObjectBlock,
     PlannerBlock,
+    RecordedOnBlock,
     RegionsBlock,
     RobotBlock,
     Scenario,
@@ -50,7 +51,7 @@ def blocks(block: type) -> Iterator[type]:
 
 def test_every_key_is_described_and_every_block_frozen() -> None:
     found = list(blocks(Scenario))
-    assert len(found) == 11
+    assert len(found) == 12
     for block in found:
         for item in fields(block):
             if item.name == "source":
@@ -95,6 +96,17 @@ def adaptive(**values: Any) -> Scenario:
     return replace(GOOD, regions=RegionsBlock(adaptive=AdaptiveBlock(**values)))
 
 
+def recorded_on(**values: Any) -> Scenario:
+    block = RecordedOnBlock(model="arm", joints=("c", "d"), end_effector="hand")
+    return replace(GOOD, recorded_on=replace(block, **values))
+
+
+def test_another_robot_may_have_made_the_recordings() -> None:
+    assert GOOD.recorded_on is None
+    assert find_problems(recorded_on()) == ()
+    assert find_problems(recorded_on(joints=("a", "b", "e"), parked={"c": 0.0})) == ()
+
+
 @pytest.mark.parametrize(
     ("scenario", "path", "message", "remedy"),
     [
@@ -110,6 +122,9 @@ def adaptive(**values: Any) -> Scenario:
             "belongs to the arm",
             "robot.start",
         ),
+        (recorded_on(joints=()), "recorded_on.joints", "at least one joint", ""),
+        (recorded_on(joints=("c", "c")), "recorded_on.joints.1", "'c' is listed twice", ""),
+        (recorded_on(parked={"c": 0.0}), "recorded_on.parked.c", "belongs to the arm", "leave it"),
         (
             replace(GOOD, table=TableBlock(center=(0, 0), size=(1, 0), top=0)),
             "table.size.1",

@@ -14,6 +14,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.screws import pose_from_planar
 from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, draw, grid_regions
+from drake_screw.visualization.lifetime import keep
 
 BOWL = ObjectArea("bowl", (0.6, -0.3, 0.0), (1.0, 0.9, 0.0), 0.1)
 
@@ -22,7 +23,7 @@ MakeRound = Callable[..., RoundFinished]
 
 @pytest.fixture(scope="module")
 def meshcat() -> Meshcat:
-    return Meshcat(MeshcatParams(host="localhost"))
+    return keep(Meshcat(MeshcatParams(host="localhost")))
 
 
 @pytest.fixture

@@ -1,18 +1,21 @@
 from __future__ import annotations
 
+import gc
 import json
 import threading
 import urllib.error
 import urllib.request
+from urllib.parse import urlsplit
 
 import pytest
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.visualization.panel_server import PanelServer
+from drake_screw.visualization.panel_server import PanelServer, check_address, warning
 
 
 @pytest.fixture
 def server(meshcat):
+    gc.collect()  # Meshcats that other tests left behind must not end in the server's thread
     server = PanelServer(meshcat.port(), "<p>my panel</p>", "a <title>")
     yield server
     server.close()
@@ -84,3 +87,32 @@ def test_a_taken_port_is_told(server, meshcat) -> None:
     port = int(server.url.rsplit(":", 1)[1].strip("/"))
     with pytest.raises(DrakeScrewError, match=f"port {port}"):
         PanelServer(meshcat.port(), "", "", port=port)
+
+
+def test_a_page_that_waits_gets_the_last_state(meshcat) -> None:
+    server = PanelServer(meshcat.port(), "", "")
+    server.show({"n": 1})
+    assert json.loads(get(server, "state?after=0"))["state"] == {"n": 1}
+    answers: list[bytes] = []
+    waiting = threading.Thread(target=lambda: answers.append(get(server, "state?after=1")))
+    waiting.start()
+    server.show({"n": 2})
+    server.close()
+    waiting.join(10)
+    assert json.loads(answers[0])["state"] == {"n": 2}
+
+
+def test_a_strange_question_gets_the_state(server) -> None:
+    server.show({"n": 1})
+    assert json.loads(get(server, "state?after=x"))["state"] == {"n": 1}
+
+
+def test_addresses_are_checked_and_warned_of(server) -> None:
+    port = urlsplit(server.url).port
+    with pytest.raises(DrakeScrewError, match=f"cannot serve on localhost, port {port}"):
+        check_address("localhost", port)
+    with pytest.raises(DrakeScrewError, match=r"cannot serve on nowhere\.invalid:"):
+        check_address("nowhere.invalid", None)
+    check_address("localhost", None)
+    assert warning("localhost") is None
+    assert "without a password" in (warning("0.0.0.0") or "")

@@ -5,7 +5,8 @@ function drawn() { return chosen === null ? null : state.attempts[chosen].drawn;
 
 function update(next) {
   const same = state && drawn() && next.chosen !== null && next.attempts[next.chosen].drawn &&
-    next.instance.key === state.instance.key && next.chosen === chosen;
+    next.round === state.round &&
+    String(next.instance.key) === String(state.instance.key) && next.chosen === chosen;
   state = next;
   stop();
   element("title").textContent = state.title;

@@ -4,8 +4,11 @@ listen((state) => {
   element("headline").textContent = state.headline;
   element("headline").style.borderColor = state.color;
   element("details").textContent = state.details;
+  element("teach").hidden = !state.teach;
+  element("teach").firstElementChild.href = state.teach;
   element("goal").textContent = state.goal;
   element("map").innerHTML = state.map;
+  element("map-words").textContent = state.map_words;
   for (const id of ["rounds", "demonstrations"]) {
     element(id).replaceChildren(...state[id].map((line) => {
       const item = make("li"), chip = make("span", "", "chip");

@@ -28,6 +28,7 @@ async function listen(update) {
   for (;;) {
     try {
       const answer = await fetch("state?after=" + seen);
+      if (document.body.classList.contains("gone")) location.reload();
       if (answer.status === 200) {
         const { version, state } = await answer.json();
         seen = version;
@@ -35,6 +36,7 @@ async function listen(update) {
       }
     } catch (error) {
       seen = 0;
+      document.body.classList.add("gone");
       await new Promise((wake) => setTimeout(wake, 1000));
     }
   }

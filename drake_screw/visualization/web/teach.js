@@ -19,6 +19,7 @@ function slider(table, name, low, high, send) {
   table.append(row);
   return { row, input, value, margin };
 }
+// While nobody is asked for anything, the lists of a state are empty.
 function build(state) {
   rows = {
     hand: state.hand.map((h, i) => slider(element("hand"), h.name, h.low, h.high,
@@ -28,10 +29,12 @@ function build(state) {
   };
 }
 listen((state) => {
-  if (!rows) build(state);
+  element("lead").hidden = !state.joints.length;
+  if (!rows && state.joints.length) build(state);
   element("title").textContent = state.title;
   element("headline").textContent = state.headline;
   element("message").textContent = state.message;
+  element("hint").textContent = state.hint;
   element("clock").textContent = state.clock;
   for (const button of document.querySelectorAll("[data-do]")) {
     button.disabled = !state.can.includes(button.dataset.do);

@@ -1,0 +1,182 @@
+"""Recordings, and the arm they were made on: the scenario's own, or that of another robot.
+
+Guiding poses belong to the object, so the arm that shows and the arm that does it may differ. What
+they must share is the hand: where the frame that was led sits on the tool, and how it is turned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Self, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import MultibodyPlant
+
+from drake_screw.demonstrations import (
+    Demonstration,
+    Recording,
+    SegmentationConfig,
+    demonstration_from_recording,
+    read_library,
+    read_recording,
+)
+from drake_screw.demonstrations.library import JOINTS
+from drake_screw.errors import ModelError, RecordingError
+from drake_screw.planning import Planner
+from drake_screw.robot import Arm, RobotConfig
+from drake_screw.robot.workcell import add_robot
+from drake_screw.scenario.schema import RecordedOnBlock
+from drake_screw.screws.rotations import Array
+from drake_screw.tasks import WorkArea
+
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True)
+class Recorder:
+    """Reads the recordings of one arm, and learns from them.
+
+    Attributes:
+        arm: that was led.
+        own: that is planned for; may be the same.
+        area: where the objects may stand for it.
+        robot: model of the robot that was led; None where `arm` is `own`.
+        model_file: that model's file; None likewise.
+    """
+
+    arm: Arm
+    own: Arm
+    area: WorkArea
+    robot: str | None = None
+    model_file: Path | None = None
+
+    @classmethod
+    def of_another(cls, block: RecordedOnBlock, own: Arm, area: WorkArea) -> Self:
+        """The recorder that a scenario describes under `recorded_on`.
+
+        Raises:
+            ModelError: its model cannot be read, or lacks a name.
+        """
+        config = RobotConfig(
+            str(block.model),
+            block.joints,
+            block.end_effector,
+            (0.0,) * len(block.joints),
+            block.base,
+            block.parked,
+        )
+        plant = MultibodyPlant(0.0)
+        try:
+            file = add_robot(Parser(plant), config)[0]
+            plant.Finalize()
+            arm = Arm(plant, config.joints, config.end_effector, parked=config.parked)
+        except ModelError as error:
+            raise ModelError(
+                f"recorded_on: {error.message}", remedy=error.remedy, file=error.file
+            ) from error
+        return cls(arm, own, area, str(block.model), file)
+
+    def read(self, folder: Path) -> Recording:
+        """One recording; see `read_recording` for what is raised."""
+        return self._marked(self._try(lambda *arm: read_recording(folder, *arm, objects=self._k)))
+
+    def library(self, folder: Path) -> tuple[Recording, ...]:
+        """All recordings in a folder; see `read_library` for what is raised."""
+        found = self._try(lambda *arm: read_library(folder, *arm, objects=self._k))
+        return tuple(self._marked(recording) for recording in found)
+
+    def seen(self, recording: Recording) -> Array:
+        """Where the objects of a recording were, for the arm that is planned for; X_WO (k, 4, 4).
+
+        The worlds of two robots have nothing in common but up, and that objects stand on something.
+        So a place is where it was *seen from the shoulder*, at the height that the first object has
+        now: from there an arm of like build is led to it in a like manner.
+        """
+        return recording.X_WO if self.robot is None else self._shift(recording) @ recording.X_WO
+
+    def learn(self, recording: Recording, config: SegmentationConfig) -> Demonstration:
+        """The recording's demonstration, its poses in the world as `seen`."""
+        learned = demonstration_from_recording(recording, self.arm, config)
+        if self.robot is None:
+            return learned
+        X = self._shift(recording)
+        return replace(learned, X_WO=X @ learned.X_WO, path=X @ learned.path)
+
+    @property
+    def _k(self) -> int:
+        return len(self.area.objects)
+
+    def _shift(self, recording: Recording) -> Array:
+        X = np.eye(4)
+        away = self.own.screw_chain().shoulder - self.arm.screw_chain().shoulder
+        X[:2, 3] = away[:2]
+        X[2, 3] = self.area.z[0] - recording.X_WO[0, 2, 3]
+        return X
+
+    def _marked(self, recording: Recording) -> Recording:
+        return replace(recording, robot=self.robot)
+
+    def _try(self, read: Callable[..., _T]) -> _T:
+        """Read; where another arm's columns are found, say what the scenario should say."""
+        try:
+            return read(self.arm.joint_names, self.arm.lower, self.arm.upper)
+        except RecordingError as error:
+            header = _header(error.file)
+            if error.line != 1 or not header or set(self.arm.joint_names) <= header:
+                raise
+            if set(self.own.joint_names) <= header:
+                hint = "It is of the scenario's own robot: remove the block recorded_on."
+            elif self.robot is not None or set(self.arm.joint_names) & header:
+                raise
+            else:
+                hint = (
+                    "If another robot made it, describe that one in a block recorded_on, as "
+                    "scenario pouring_iiwa does."
+                )
+            remedy = f"{error.remedy}. {hint}"
+            raise RecordingError(
+                error.message, remedy=remedy, file=error.file, line=error.line
+            ) from error
+
+
+@dataclass(frozen=True)
+class ForeignRecordings:
+    """What a teacher asks about recordings made on another robot; see `acquisition.Foreign`.
+
+    Attributes:
+        recorder: of that robot.
+        segmentation: how they are cut into screws.
+        planner: of the arm that is planned for.
+        start: (n,) rad or m, where its plans start.
+    """
+
+    recorder: Recorder
+    segmentation: SegmentationConfig
+    planner: Planner
+    start: Array
+    _learned: dict[Path | None, Demonstration] = field(default_factory=dict, repr=False)
+
+    def seen(self, recording: Recording) -> Array:
+        """See `Recorder.seen`."""
+        return self.recorder.seen(recording)
+
+    def works(self, recordings: Sequence[Recording], x_y_yaw: Array) -> NDArray[np.bool_]:
+        """Whether each gives a plan at a task instance (k, 3)."""
+        for recording in recordings:
+            if recording.source not in self._learned:
+                learned = self.recorder.learn(recording, self.segmentation)
+                self._learned[recording.source] = learned
+        demonstrations = [self._learned[recording.source] for recording in recordings]
+        X_WO = self.recorder.area.X_WO(x_y_yaw)[None]
+        return self.planner.all_outcomes(demonstrations, X_WO, self.start).success[0]
+
+
+def _header(file: Path | None) -> set[str]:
+    if file is None or file.name != JOINTS or not file.is_file():
+        return set()
+    with file.open(encoding="utf-8-sig") as lines:
+        return {name.strip() for name in lines.readline().split(",")}
