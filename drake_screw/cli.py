@@ -116,7 +116,7 @@ def run(
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print just the end.")] = False,
 ) -> None:
-    """Acquire demonstrations until every region is covered, and certify it.
+    """Acquire demonstrations until every region is covered.
 
     Exit code 0: certified. 1: ended without a certificate. 2: bad input.
     130: interrupted; --resume carries the run on.
@@ -184,7 +184,7 @@ def evaluate(
 
 @app.command(epilog="Example:  drake-screw check my_scenario.yaml")
 def check(scenario: ScenarioArgument, model: ModelOption = None, set_: SetOption = None) -> None:
-    """Check a scenario and the files it names, and tell what would run."""
+    """Check a scenario and its files; tell what would run."""
     from drake_screw.scenario.check import check as carry_out
 
     Console().print(carry_out(_load(scenario, set_, model)), highlight=False)
@@ -229,9 +229,9 @@ def study(
     workers: Annotated[int | None, typer.Option(help="Processes. Default: all processors.")] = None,
     set_: SetOption = None,
 ) -> None:
-    """Measure how many demonstrations a certificate takes, by number of regions.
+    """Measure how many demonstrations a certificate takes.
 
-    Every run has fresh samples and a random first demonstration.
+    For several numbers of regions; every run has fresh samples and a random first demonstration.
     """
     from drake_screw.scenario.study import new_study, numbers_of_regions, open_study
     from drake_screw.scenario.study_console import show_study
@@ -268,7 +268,10 @@ def inspect(
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "localhost",
     port: Annotated[int | None, typer.Option(help="Port of the page. Default: a free one.")] = None,
 ) -> None:
-    """See why an instance fails: in the terminal, in Meshcat, or on a page of its own."""
+    """See why an instance fails.
+
+    In the terminal, and in Meshcat or on a page that can be kept.
+    """
     from drake_screw.scenario.inspect import inspect as carry_out
 
     carry_out(run, Console(), round=round, instance=instance, html=html, host=host, port=port)
@@ -284,10 +287,10 @@ def execute(
     ] = False,
     workers: Annotated[int | None, typer.Option(help="Processes. Default: all processors.")] = None,
 ) -> None:
-    """Simulate plans of a run with dynamics, and check what the robot does.
+    """Simulate plans of a run, and check what the robot does.
 
-    Reports joint limits, velocities, tracking, deviation from the screws and contacts; writes a
-    table and a recording that plays in the browser.
+    With the arm's dynamics and controllers. Reports joint limits, velocities, tracking, deviation
+    from the screws and contacts; writes a table and a recording that plays in the browser.
     """
     from drake_screw.scenario.execute import execute as carry_out
     from drake_screw.scenario.execute import station_graphviz

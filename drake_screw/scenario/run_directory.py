@@ -9,7 +9,6 @@ import platform
 import shutil
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -18,16 +17,21 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from drake_screw.acquisition import Evaluation, RoundFinished, Status, Suggestion
+from drake_screw.acquisition import Evaluation, RoundFinished, Status
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Recording, write_recording
 from drake_screw.errors import RunDirectoryError
 from drake_screw.scenario.evaluation_file import load_evaluation, save_evaluation
+from drake_screw.scenario.round_record import (
+    ARRAYS,
+    regions_csv,
+    round_record,
+    suggestion_record,
+)
 from drake_screw.tasks import Regions
 
 FORMAT = 1
 RUN, SCENARIO, LOG = "run.json", "scenario.yaml", "run.log"
-_ARRAYS = ("samples", "failures", "lower", "upper")
 _KINDS: dict[str, type | tuple[type, ...]] = {
     "scenario": str,
     "status": str,
@@ -178,15 +182,15 @@ class RunDirectory:
         verdict = event.verdict
 
         def fill(folder: Path) -> None:
-            (folder / "regions.csv").write_text(_regions_csv(verdict, regions))
+            (folder / "regions.csv").write_text(regions_csv(verdict, regions))
             save_evaluation(folder / "instances.npz", event.evaluation)
             if event.suggestion is not None:
-                text = json.dumps(_suggestion(event.suggestion, regions), indent=2)
+                text = json.dumps(suggestion_record(event.suggestion, regions), indent=2)
                 (folder / "next_demonstration.json").write_text(text + "\n")
             draw(event, folder / "heat_map")
 
         write_folder(self.round_folder(event.round), fill)
-        self.save(rounds=[*self.record["rounds"], _round_record(event, regions)])
+        self.save(rounds=[*self.record["rounds"], round_record(event, regions)])
 
     def round_folder(self, round: int) -> Path:
         """Folder of a round; the first is round_01."""
@@ -204,7 +208,7 @@ class RunDirectory:
         try:
             evaluation = load_evaluation(file)
             fields = dict(entry["verdict"])
-            for name in _ARRAYS:
+            for name in ARRAYS:
                 fields[name] = np.array(fields[name])
             verdict = Verdict(**fields)
             N, D = evaluation.outcomes.shape
@@ -279,51 +283,3 @@ def _fresh(parent: Path) -> Path:
         count += 1
         path = parent / f"{stamp}_{count}"
     return path
-
-
-def _round_record(event: RoundFinished, regions: Regions) -> dict[str, Any]:
-    verdict = event.verdict
-    fields = asdict(verdict)
-    for name in _ARRAYS:
-        fields[name] = fields[name].tolist()
-    return {
-        "round": event.round + 1,
-        "demonstrations": len(event.demonstrations),
-        "samples": np.bincount(event.evaluation.region, minlength=regions.K).tolist(),
-        "failure_rates": verdict.estimates.tolist(),
-        "weakest_region": verdict.region,
-        "certified": verdict.certified,
-        "reason": verdict.reason,
-        "next_demonstration": None
-        if event.suggestion is None
-        else _suggestion(event.suggestion, regions),
-        "verdict": fields,
-    }
-
-
-def _suggestion(suggestion: Suggestion, regions: Regions) -> dict[str, Any]:
-    objects = zip(regions.area.objects, suggestion.x_y_yaw.tolist(), strict=True)
-    return {
-        "region": suggestion.region,
-        "region_name": regions.name(suggestion.region),
-        "objects": {o.name: {"x": x, "y": y, "yaw": yaw} for o, (x, y, yaw) in objects},
-        "failed_segment": None if suggestion.segment is None else suggestion.segment + 1,
-    }
-
-
-def _regions_csv(verdict: Verdict, regions: Regions) -> str:
-    axes = [f"{o.name}_{a}" for o in regions.area.objects for a in ("x", "y", "yaw")]
-    header = ["region", *(f"{a}_{end}" for a in axes for end in ("min", "max"))]
-    rows = [",".join([*header, "samples", "failures", "failure_rate", "lower", "upper"])]
-    for j in range(regions.K):
-        lower, upper = regions.bounds(j)
-        ends = np.stack([lower.ravel(), upper.ravel()], axis=1).ravel()
-        numbers = [verdict.estimates[j], verdict.lower[j], verdict.upper[j]]
-        rows.append(
-            ",".join(
-                [str(j), *(f"{e:.6g}" for e in ends)]
-                + [str(verdict.samples[j]), str(verdict.failures[j])]
-                + [f"{v:.6g}" for v in numbers]
-            )
-        )
-    return "\n".join(rows) + "\n"

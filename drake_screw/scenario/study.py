@@ -149,6 +149,12 @@ def new_study(
             f"{runs} runs for {len(regions)} numbers of regions",
             remedy="Give at least one run, and one number of regions.",
         )
+    if scenario.teacher.kind == "interactive":
+        raise ScenarioError(
+            "teacher.kind: an interactive teacher would be asked in every run of a study",
+            remedy="Give --demonstrations DIR, or a scenario with a simulated teacher.",
+            file=scenario.source,
+        )
     setup = Experiment(scenario).setup
     for K in regions:
         split(setup.area, K)

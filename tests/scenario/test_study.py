@@ -204,6 +204,9 @@ def test_bad_requests_write_nothing(scenario, tmp_path):
     for regions, runs in (((), 3), ((1,), 0), ((1, 0), 3)):
         with pytest.raises(ScenarioError):
             new_study(scenario, regions, runs, tmp_path / "none")
+    asking = load_scenario("pouring", ["teacher={kind: interactive}"])
+    with pytest.raises(ScenarioError, match="would be asked in every run"):
+        new_study(asking, (1,), 3, tmp_path / "none")
     assert not (tmp_path / "none").exists()
     (tmp_path / "file").write_text("in the way")
     for output in (tmp_path, tmp_path / "file", tmp_path / "file" / "sub"):
