@@ -56,8 +56,6 @@ def batch_speed(task: Task, X_WO: Array, repeats: int) -> dict[str, Any]:
     result: dict[str, Any] = {"plans": plans, "threads": {}}
     for threads in sorted({1, os.cpu_count() or 1}):
         planner = BatchPlanner(task.arm.screw_chain(), threads=threads)
-        if not planner.compiled:
-            print("compiling for this arm, once ...")
         begin = time.perf_counter()
         planner.all_outcomes(task.demonstrations, X_WO[:1], task.q_start)
         result.setdefault("first_call_seconds", time.perf_counter() - begin)

@@ -77,12 +77,23 @@ def _load(scenario: str, changes: list[str] | None, model: Path | None) -> Scena
     return swap_model(loaded, model)
 
 
+class _Terminal(logging.Handler):
+    """Prints to what is the standard error then: a progress bar may have taken its place."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        print(self.format(record), file=sys.stderr)
+
+
 @app.callback()
-def _quieten() -> None:
+def _set_up_logging() -> None:
     # Importing pydrake sets its logger's level, so it has to be lowered afterwards.
     import pydrake.common  # noqa: F401
 
     logging.getLogger("drake").setLevel(logging.WARNING)
+    own = logging.getLogger("drake_screw")
+    own.setLevel(logging.INFO)
+    if not own.handlers:
+        own.addHandler(_Terminal())
 
 
 @app.command(epilog="Example:  drake-screw run pouring --seed 7 --set coverage.beta=0.9")
@@ -121,6 +132,8 @@ def run(
     Exit code 0: certified. 1: ended without a certificate. 2: bad input.
     130: interrupted; --resume carries the run on.
     """
+    if quiet:
+        logging.getLogger("drake_screw").setLevel(logging.WARNING)
     from drake_screw.scenario.console import show
     from drake_screw.scenario.pages import check_pages, open_pages
     from drake_screw.scenario.runner import new_run, open_run, resumable

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Sequence
 
@@ -17,12 +18,14 @@ from drake_screw.screws.rotations import Array
 
 EVALUATIONS_PER_STEP = 6
 
+_LOG = logging.getLogger(__name__)
+
 
 class BatchPlanner:
     """Answers `ReferencePlanner`'s question for whole batches, on all processors.
 
     The first planner of an arm on a machine has its code compiled at its first use, which takes
-    a few seconds; later ones load it from a cache in the user's cache folder.
+    a few seconds and is logged (INFO); later ones load it from a cache in the user's cache folder.
 
     Args:
         chain: the arm.
@@ -101,6 +104,8 @@ class BatchPlanner:
                 np.full(shape, joint, dtype=np.int8),
                 np.zeros(shape, dtype=np.float32),
             )
+        if not self.compiled and len(X_WO) * len(demonstrations) > 0:
+            _LOG.info("compiling the planner for this arm, once; this takes a few seconds")
         answers = self._kernel.plan(
             [d.X_OE for d in demonstrations],
             [d.objects for d in demonstrations],

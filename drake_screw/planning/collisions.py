@@ -159,11 +159,6 @@ class CollisionFreePlanner:
         """As `BatchPlanner.evaluations`."""
         return self.planner.evaluations
 
-    @property
-    def compiled(self) -> bool:
-        """As `BatchPlanner.compiled`."""
-        return self.planner.compiled
-
     def all_outcomes(
         self, demonstrations: Sequence[Demonstration], X_WO: ArrayLike, q_start: ArrayLike
     ) -> Outcomes:

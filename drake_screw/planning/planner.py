@@ -14,11 +14,6 @@ from drake_screw.planning.outcomes import Outcomes
 class Planner(Protocol):
     """Answers for N instances and D demonstrations at once; see `BatchPlanner`."""
 
-    @property
-    def compiled(self) -> bool:
-        """Whether the first use will not wait for a compiler."""
-        ...
-
     def all_outcomes(
         self, demonstrations: Sequence[Demonstration], X_WO: ArrayLike, q_start: ArrayLike
     ) -> Outcomes:

@@ -47,10 +47,6 @@ def show(
         The run's last event.
     """
     regions, desk = run.setup.regions, desk_of(run.setup)
-    if not (quiet or run.setup.planner.compiled):
-        console.print(
-            "compiling the planner for this arm; this happens once and takes a few seconds"
-        )
     live = _progress(console, hidden=quiet)
     with live:
         task = live.add_task("starting", total=None, detail="")

@@ -90,3 +90,36 @@ def test_where_nothing_can_be_kept_it_works_all_the_same(tmp_path: Path) -> None
     )
     assert after
     assert file.parents[1] == tmp_path
+
+
+TOLD = """
+import logging, sys
+import numpy as np
+from drake_screw.demonstrations import Demonstration
+from drake_screw.planning import BatchPlanner
+from drake_screw.robot import ScrewChain
+
+logging.basicConfig(level=logging.INFO, stream=sys.stdout)
+screw = np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+chain = ScrewChain(("slide",), screw, np.eye(4), np.array([-1.0]), np.array([1.0]))
+one = np.eye(4)[None]
+demonstration = Demonstration("d", one, np.zeros(1, int), one, one, np.zeros(1, int))
+for X_WO in (np.zeros((0, 1, 4, 4)), one[None], one[None]):
+    BatchPlanner(chain).any_success([demonstration], X_WO, np.zeros(1))
+    print("planned", len(X_WO))
+"""
+
+
+def test_whoever_waits_for_the_compiler_is_told_why(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", TOLD],
+        env=os.environ | {"XDG_CACHE_HOME": str(tmp_path), "NUMBA_CACHE_DIR": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    first, told, *rest = done.stdout.splitlines()
+    assert first == "planned 0"
+    assert "compiling the planner for this arm" in told
+    assert rest == ["planned 1", "planned 1"]
