@@ -129,7 +129,7 @@ def fine_outcomes(
         ratio = rate / np.maximum(size[live], 1e-12)
         out.rate[live] = np.maximum(out.rate[live], ratio)
         stuck = rate > rate_limit * size[live]
-        stuck |= hand_motion(rest, X_WE) > MISFIT_LIMIT * size[live]
+        stuck |= hand_motion(rest, X_WE) * (1.0 - s[live]) > MISFIT_LIMIT * size[live]
         live = _end(out, live, segment, stuck, Cause.UNREACHABLE)
         V, k1, rate = V[~stuck], k1[~stuck], rate[~stuck]
         if not len(live):

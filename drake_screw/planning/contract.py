@@ -19,10 +19,12 @@ by LENGTH. It bounds the inverse of the Jacobian's least singular value along th
 """
 
 MISFIT_LIMIT = 1e-2
-"""Part of the hand's twist that the joints cannot give at which a pose is called unreachable.
+"""Part of a segment's hand motion that the joints cannot give at which a pose is unreachable.
 
-It is what J dq/ds lacks of the twist, in RATE_LIMIT's measure of hand motion: at a singularity, or
-wherever an arm of fewer than six joints is asked for a motion that it does not have.
+It is what J dq/ds lacks of the twist, times what is left of the segment, in RATE_LIMIT's measure of
+hand motion: at a singularity, or wherever an arm of fewer than six joints is asked for a motion
+that it does not have. Towards the segment's end, where next to nothing is left to move, it is the
+tolerances that count.
 """
 
 ORIENTATION_MIN = 1e-14

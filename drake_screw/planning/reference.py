@@ -34,7 +34,8 @@ class ReferencePlanner:
     Args:
         arm: to plan for.
         step: hand motion in one step, rad and (divided by LENGTH) m together.
-        joint_step: rad (or m), joint motion in one step, so that steps shrink where joints race.
+        joint_step: rad (or m), joint motion in one step, so that steps shrink where joints race;
+            at least half of `step`.
     """
 
     def __init__(self, arm: Arm, *, step: float = 0.01, joint_step: float = 0.005) -> None:
@@ -83,7 +84,7 @@ class ReferencePlanner:
             V = self._twist(q, X_WG)[0] / (1.0 - s)
             rates, misfit = self._rates_and_misfit(q, V)
             rate = float(np.linalg.norm(rates))
-            if rate > RATE_LIMIT * size or misfit > MISFIT_LIMIT * size:
+            if rate > RATE_LIMIT * size or misfit * (1.0 - s) > MISFIT_LIMIT * size:
                 return points, fractions, Cause.UNREACHABLE, -1
             h = min(self.step / max(size, 1e-12), self.joint_step / max(rate, 1e-12), 1.0 - s)
             moved = self._runge_kutta(q, h * V)
@@ -103,7 +104,7 @@ class ReferencePlanner:
             points.append(q)
             fractions.append(s)
         if (self.arm.margin(q) <= 0.0).any():
-            return (points, fractions, Cause.JOINT_LIMIT, int(np.argmin(self.arm.margin(q))))
+            return points, fractions, Cause.JOINT_LIMIT, int(np.argmin(self.arm.margin(q)))
         arrived = _near(self.arm.pose(q), X_WG, 1.0)
         return points, fractions, Cause.SUCCESS if arrived else Cause.UNREACHABLE, -1
 

@@ -159,6 +159,24 @@ def test_fewer_than_six_joints(planar: Arm) -> None:
     assert not BatchPlanner(chain).all_outcomes([lesson], lifted, BENT).success.any()
 
 
+@pytest.mark.parametrize(("off", "fine"), [(0.0, True), (1e-5, True), (9e-5, True), (2e-4, False)])
+def test_a_guiding_pose_off_the_arms_plane_counts_by_the_tolerance(
+    planar: Arm, off: float, fine: bool
+) -> None:
+    """Also with smaller steps, of which more lie near the end, where little is left to move."""
+    rng = np.random.default_rng(15)
+    bends = np.add(BENT, rng.uniform(-0.25, 0.25, (12, 1, len(BENT))))
+    X_WE = planar.pose(bends)
+    X_WE[..., 2, 3] += off
+    one = np.eye(4)[None]
+    lessons = [demonstration(X, one, np.zeros(1, dtype=int), "off") for X in X_WE]
+    answers = BatchPlanner(planar.screw_chain()).all_outcomes(lessons, one[None], BENT)
+    assert (answers.success == fine).all()
+    for step in (0.02, 0.005):
+        planner = ReferencePlanner(planar, step=step, joint_step=step)
+        assert [planner.plan(BENT, X).success for X in X_WE] == [fine] * len(X_WE)
+
+
 def test_a_motion_that_is_reachable_by_construction_succeeds(
     seven: Arm, planner: BatchPlanner
 ) -> None:

@@ -46,7 +46,7 @@ class Settings:
             arm's reach, at s*, |dq/ds|^2 grows as 1 / (s* - s), so that two values of it tell s*.
         step_min: of s; where smaller steps are needed the hand cannot follow.
         rate_max: bound on |dq/ds| per hand motion sqrt(turn^2 + (travel / LENGTH)^2), rad.
-        misfit_max: bound on the part of the twist that the joints cannot give.
+        misfit_max: bound on the part of the hand motion that the joints cannot give.
     """
 
     tolerance: float = 1e-4
@@ -181,7 +181,8 @@ def _aim(arm: ArmCode, factor: Factor, settings: Settings) -> None:
 
     in_middle = arm.to_middle(new_twist)
     rates = joint_rates(e, arm.columns, factor, in_middle)
-    update(r.MISFIT, misfit(e, arm.columns, rates, in_middle))
+    missing = misfit(e, arm.columns, rates, in_middle)
+    update(r.MISFIT, e.sum((missing, left, left)))
     fastest: Value = 0.0
     for j, rate in enumerate(rates):
         slope = update(rows.slope(0) + j, rate)
@@ -231,7 +232,9 @@ def judge(lower: Vector, upper: Vector, settings: Settings) -> str:
         ahead = e.let(f"min({ahead}, {step} * {shrunk} / max(1.0 - {shrunk}, 1e-30))")
     next_step = e.let(f"min({step} * {change}, {settings.approach!r} * {ahead})")
     bound = e.let(f"{settings.rate_max**2!r} * {e.load(r.HAND)}")
+    stages = e.sum((rate_end,), *((rate,) for rate in between))
     stray = e.let(f"({largest} > {bound}) & ({rate_end} <= {bound})")
+    stray = e.let(f"{stray} | (not ({stages} >= 0.0))")
     if n <= 6:
         stray = e.let(f"{stray} | ({e.load(r.ORIENTATION)} < {-ORIENTATION_MIN!r})")
     good = e.let(f"({error} <= 1.0) & (not {stray})")
