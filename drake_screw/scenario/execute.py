@@ -153,7 +153,7 @@ def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
             remedy=f"Carry it on first: drake-screw run --resume {run.directory.path}",
             file=run.directory.path,
         )
-    return tuple(run.setup.learn(run._stored(number)[0]) for number in range(len(entries)))
+    return tuple(run.setup.learn(run.stored(number)[0]) for number in range(len(entries)))
 
 
 def placed(setup: Setup, numbers: Sequence[float]) -> Array:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pydrake.geometry import Meshcat, MeshcatParams
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from drake_screw.errors import DrakeScrewError
 from drake_screw.scenario.choice import Choice, changed, choose
 from drake_screw.scenario.inspection import Inspection, open_inspection
 from drake_screw.scenario.stage import Stage
@@ -18,9 +20,9 @@ from drake_screw.visualization.inspector_panel import (
     where,
     with_panel,
 )
-from drake_screw.visualization.lifetime import keep, scratch
+from drake_screw.visualization.lifetime import page_meshcat, scratch
 from drake_screw.visualization.palette import OUTCOME_NAMES
-from drake_screw.visualization.panel_server import PanelServer, warning
+from drake_screw.visualization.panel_server import PanelServer, check_address, warning
 
 POLL = 1.0
 """s. How often a run that is still going on is asked for new rounds."""
@@ -77,8 +79,8 @@ def serve(
         host: "localhost", or an address to listen on, so that others can look, too.
         port: of the page; any free one if None.
     """
-    stage = Stage(inspection, host)
-    keep(stage.meshcat)
+    check_address(host, port)
+    stage = Stage(inspection, page_meshcat(host))
     page = inspector_body(None)
     name = inspection.setup.scenario.name
     server = PanelServer(stage.meshcat.port(), page, f"{name}: inspect", host=host, port=port)
@@ -109,11 +111,25 @@ def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
     """Write one instance with all its demonstrations as a page that needs no network.
 
     Beside it, with the same name, are its numbers as .json and the plans as .csv.
+
+    Raises:
+        DrakeScrewError: the page cannot be written there.
     """
+    if file.suffix in (".csv", ".json"):
+        raise DrakeScrewError(
+            "a page under this name would be overwritten by its own numbers",
+            remedy=f"Name it {file.with_suffix('.html').name}; the numbers are written beside it.",
+            file=file,
+        )
     with scratch():
         page = _page(inspection, choice)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(page, encoding="utf-8")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise DrakeScrewError(
+            f"cannot be written: {error.strerror}", remedy="Give another --html.", file=file
+        ) from error
     if choice.instance is not None:
         attempts = inspection.attempts(choice.round, choice.instance)
         file.with_suffix(".csv").write_text(attempts_csv(attempts))
@@ -124,7 +140,7 @@ def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
 
 
 def _page(inspection: Inspection, choice: Choice) -> str:
-    stage = Stage(inspection)
+    stage = Stage(inspection, Meshcat(MeshcatParams(host="localhost", show_stats_plot=False)))
     drawn = stage.show(choice, live=False)
     title = f"{inspection.setup.scenario.name}, round {choice.round + 1}"
     return with_panel(stage.meshcat.StaticHtml(), inspector_body(drawn), title)

@@ -133,7 +133,7 @@ class Inspection:
             count = int(entry["demonstrations"])
             suggestion = self._suggestion(entry["next_demonstration"])
             for number in range(len(self._demonstrations), count):
-                recording, _ = self.run._stored(number)
+                recording, _ = self.run.stored(number)
                 self._demonstrations.append(self.setup.learn(recording))
         except (KeyError, TypeError, ValueError, IndexError) as error:
             raise RunDirectoryError(

@@ -69,13 +69,21 @@ class DeskLesson:
                 getattr(self, f"_{action}")()
             case {"hand": int(axis), "value": int() | float() as value} if self.leading:
                 if 0 <= axis < 6 and isfinite(value):
-                    self._hand[axis] = value
+                    low, high = self._range
+                    self._hand[axis] = np.clip(value, low[axis], high[axis])
                     self._q_goal = None
             case {"joint": int(joint), "value": int() | float() as value} if self.leading:
                 if 0 <= joint < self.led.arm.n and isfinite(value):
                     goal = self.led.q.copy() if self._q_goal is None else self._q_goal
                     goal[joint] = value
                     self._q_goal = goal
+
+    @property
+    def _range(self) -> tuple[Array, Array]:
+        """Ends of the hand's sliders."""
+        center = self._hand_of(self._X_WE)
+        half = np.array([REACH] * 3 + [np.pi] * 3)
+        return center - half, center + half
 
     def step(self) -> bool:
         """One period of the arm's motion; returns whether it moved."""
@@ -108,8 +116,7 @@ class DeskLesson:
         """What the panel shows."""
         arm, q = self.led.arm, self.led.q
         margin = arm.margin(q)
-        center = self._hand_of(self._X_WE)
-        half = [REACH] * 3 + [np.pi] * 3
+        low, high = self._range
         stuck = "the arm cannot follow: a joint is at its limit, or it is stretched out"
         asked = place(self._suggestion, self._suggestion.regions or self._setup.regions)
         spacing = 1e3 * self._setup.segmentation.spacing
@@ -124,9 +131,9 @@ class DeskLesson:
             "can": self._can(),
             "leading": self.leading,
             "hand": [
-                {"name": n, "low": c - h, "high": c + h, "value": round(float(v), 5), "unit": u}
-                for n, c, h, v, u in zip(
-                    HAND, center, half, self._hand, ["m"] * 3 + ["rad"] * 3, strict=True
+                {"name": n, "low": a, "high": b, "value": round(float(v), 5), "unit": u}
+                for n, a, b, v, u in zip(
+                    HAND, low, high, self._hand, ["m"] * 3 + ["rad"] * 3, strict=True
                 )
             ],
             "joints": [

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.colors import to_hex
-from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_screw.acquisition import (
     DemonstrationAdded,
@@ -26,7 +25,7 @@ from drake_screw.scenario.narration import describe
 from drake_screw.visualization import Scene
 from drake_screw.visualization.charts import work_area_map
 from drake_screw.visualization.inspector_panel import body, map_words, script_json
-from drake_screw.visualization.lifetime import keep
+from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -73,7 +72,7 @@ class LiveView:
         teach: str = "",
     ) -> None:
         self._setup = setup
-        self.meshcat = keep(Meshcat(MeshcatParams(host=host, show_stats_plot=False)))
+        self.meshcat = page_meshcat(host)
         name = setup.scenario.name
         self.scene = Scene(
             self.meshcat, setup.robot, setup.table, setup.objects, setup.area, scenario=name

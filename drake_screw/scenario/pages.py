@@ -86,7 +86,12 @@ def open_pages(
         desk.open()
     if watched:
         teach = "" if desk is None else desk.url
-        view = LiveView(setup, host=host, port=port, teach=teach)
+        try:
+            view = LiveView(setup, host=host, port=port, teach=teach)
+        except DrakeScrewError:
+            if desk is not None:
+                desk.close()
+            raise
         console.print(f"watch the run at {view.url}", soft_wrap=True)
     if desk is not None:
         console.print(f"give demonstrations at {desk.url}", soft_wrap=True)

@@ -92,7 +92,8 @@ class Recorder:
     def seen(self, recording: Recording) -> Array:
         """Where the objects of a recording were, for the arm that is planned for; X_WO (k, 4, 4).
 
-        The worlds of two robots have nothing in common but up, and that objects stand on something.
+        The worlds of two robots are taken to have the directions of their axes in common, and that
+        objects stand on something.
         So a place is where it was *seen from the shoulder*, at the height that the first object has
         now: from there an arm of like build is led to it in a like manner.
         """
@@ -125,8 +126,8 @@ class Recorder:
         try:
             return read(self.arm.joint_names, self.arm.lower, self.arm.upper)
         except RecordingError as error:
-            header = _header(error.file)
-            if error.line != 1 or not header or set(self.arm.joint_names) <= header:
+            header = _header(error.file) if error.line == 1 else set()
+            if not header or set(self.arm.joint_names) <= header:
                 raise
             if set(self.own.joint_names) <= header:
                 hint = "It is of the scenario's own robot: remove the block recorded_on."
@@ -158,7 +159,7 @@ class ForeignRecordings:
     segmentation: SegmentationConfig
     planner: Planner
     start: Array
-    _learned: dict[Path | None, Demonstration] = field(default_factory=dict, repr=False)
+    _learned: dict[tuple[Path | None, str], Demonstration] = field(default_factory=dict, repr=False)
 
     def seen(self, recording: Recording) -> Array:
         """See `Recorder.seen`."""
@@ -167,16 +168,20 @@ class ForeignRecordings:
     def works(self, recordings: Sequence[Recording], x_y_yaw: Array) -> NDArray[np.bool_]:
         """Whether each gives a plan at a task instance (k, 3)."""
         for recording in recordings:
-            if recording.source not in self._learned:
+            if _key(recording) not in self._learned:
                 learned = self.recorder.learn(recording, self.segmentation)
-                self._learned[recording.source] = learned
-        demonstrations = [self._learned[recording.source] for recording in recordings]
+                self._learned[_key(recording)] = learned
+        demonstrations = [self._learned[_key(recording)] for recording in recordings]
         X_WO = self.recorder.area.X_WO(x_y_yaw)[None]
         return self.planner.all_outcomes(demonstrations, X_WO, self.start).success[0]
+
+
+def _key(recording: Recording) -> tuple[Path | None, str]:
+    return recording.source, recording.name
 
 
 def _header(file: Path | None) -> set[str]:
     if file is None or file.name != JOINTS or not file.is_file():
         return set()
-    with file.open(encoding="utf-8-sig") as lines:
+    with file.open(encoding="utf-8-sig", errors="replace") as lines:
         return {name.strip() for name in lines.readline().split(",")}

@@ -73,21 +73,6 @@ class RunDirectory:
             RunDirectoryError: the place is taken or cannot be written.
         """
         path = path or _fresh(Path("runs") / name)
-        try:
-            if path.exists() and (not path.is_dir() or any(path.iterdir())):
-                raise RunDirectoryError(
-                    "exists already; a run never overwrites anything",
-                    remedy="Give another --output, or continue a run with --resume.",
-                    file=path,
-                )
-            path.mkdir(parents=True, exist_ok=True)
-            write_text(path / SCENARIO, scenario_text)
-        except OSError as error:
-            raise RunDirectoryError(
-                f"cannot be written: {error.strerror}",
-                remedy="Choose a folder you may write to with --output.",
-                file=path,
-            ) from error
         record = {
             "format": FORMAT,
             "scenario": name,
@@ -105,7 +90,22 @@ class RunDirectory:
             "rounds": [],
         }
         directory = cls(path, record)
-        directory.save()
+        try:
+            if path.exists() and (not path.is_dir() or any(path.iterdir())):
+                raise RunDirectoryError(
+                    "exists already; a run never overwrites anything",
+                    remedy="Give another --output, or continue a run with --resume.",
+                    file=path,
+                )
+            path.mkdir(parents=True, exist_ok=True)
+            write_text(path / SCENARIO, scenario_text)
+            directory.save()
+        except OSError as error:
+            raise RunDirectoryError(
+                f"cannot be written: {error.strerror}",
+                remedy="Choose a folder you may write to with --output.",
+                file=path,
+            ) from error
         return directory
 
     @classmethod

@@ -62,10 +62,11 @@ class Run:
                 self._record(event)
                 yield event
         except BaseException as error:
-            interrupted = isinstance(error, KeyboardInterrupt | GeneratorExit)
-            reason = "interrupted" if interrupted else f"{type(error).__name__}: {error}"
-            self.directory.save(status=Status.INTERRUPTED.value, reason=reason)
-            self._log(reason)
+            if self.directory.record["status"] == Status.RUNNING:
+                interrupted = isinstance(error, KeyboardInterrupt | GeneratorExit)
+                reason = "interrupted" if interrupted else f"{type(error).__name__}: {error}"
+                self.directory.save(status=Status.INTERRUPTED.value, reason=reason)
+                self._log(reason)
             raise
 
     def replay(self) -> Iterator[Event]:
@@ -158,9 +159,9 @@ class Run:
         if number >= len(self.directory.record["demonstrations"]):
             held = self.setup.scenario.robot.parked
             self.directory.add_demonstration(number, recording, remark, held)
-        return self._stored(number)[0]
+        return self.stored(number)[0]
 
-    def _stored(self, number: int) -> tuple[Recording, str]:
+    def stored(self, number: int) -> tuple[Recording, str]:
         """A recording of the run directory, and what was remarked on it."""
         if number >= len(self.directory.record["demonstrations"]):
             raise self._lacks(f"demonstration {number + 1}")
@@ -176,7 +177,7 @@ class Run:
                 self.directory.add_round(event, event.regions, draw_round(self.setup))
         elif isinstance(event, Finished):
             with scratch():
-                draw_run(self.setup, self._rounds(event), self.directory.path)
+                draw_run(self.setup, self._rounds(), self.directory.path)
             self.directory.save(
                 status=event.status.value,
                 reason=event.reason,
@@ -184,7 +185,7 @@ class Run:
                 finished=datetime.now().astimezone().isoformat(timespec="seconds"),
             )
 
-    def _rounds(self, finished: Finished) -> list[RoundFinished]:
+    def _rounds(self) -> list[RoundFinished]:
         """The run's rounds, told again from its directory."""
         return [e for e in self._acquire(None, told=True) if isinstance(e, RoundFinished)]
 
@@ -218,7 +219,7 @@ class _KeptTeacher:
     ) -> Lesson:
         run = self.run
         if number < len(run.directory.record["demonstrations"]):
-            return Lesson(*run._stored(number))
+            return Lesson(*run.stored(number))
         if self.told:
             return Lesson(None, "the teacher had no more")
         lesson = run.setup.teacher.demonstrate(suggestion, number=number, used=used, rng=rng)

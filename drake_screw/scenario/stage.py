@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from pydrake.geometry import Meshcat, MeshcatParams
+from pydrake.geometry import Meshcat
 
 from drake_screw.scenario.choice import Choice, steps, which
 from drake_screw.scenario.inspection import Inspection
@@ -19,10 +19,10 @@ from drake_screw.visualization.scene import MOST_DOTS
 class Stage:
     """A Meshcat with the scene of a run and an inspector in it."""
 
-    def __init__(self, inspection: Inspection, host: str = "localhost") -> None:
+    def __init__(self, inspection: Inspection, meshcat: Meshcat) -> None:
         setup = inspection.setup
         self.inspection = inspection
-        self.meshcat = Meshcat(MeshcatParams(host=host, show_stats_plot=False))
+        self.meshcat = meshcat
         self.scene = Scene(
             self.meshcat,
             setup.robot,

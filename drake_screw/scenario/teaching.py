@@ -8,8 +8,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from pydrake.geometry import Meshcat, MeshcatParams
-
 from drake_screw.acquisition import Event, Finished, RoundFinished, RoundStarted, Suggestion
 from drake_screw.acquisition.interactive import InteractiveTeacher
 from drake_screw.demonstrations import Recording
@@ -22,7 +20,7 @@ from drake_screw.screws.rotations import Array
 from drake_screw.visualization import Scene
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.inspector_panel import KEY, body, script_json
-from drake_screw.visualization.lifetime import keep
+from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.visualization.palette import ACCENT
 from drake_screw.visualization.panel_server import PanelServer
 
@@ -34,6 +32,10 @@ LOOK = 1.0
 
 def _print(text: str) -> None:
     print(text, flush=True)
+
+
+_Files = tuple[tuple[str, int, int], ...]
+"""Name, size in bytes and time of change in ns of each file of a recording."""
 
 
 class TeachingDesk:
@@ -67,7 +69,8 @@ class TeachingDesk:
         self._setup, self._inbox = setup, inbox
         self.host, self.port, self.announce = host, port, announce
         self.url = ""
-        self._seen = {folder: when for folder, when, _ in self._dropped()}
+        self._seen = dict(self._dropped())
+        self._since: dict[Path, tuple[_Files, float]] = {}
         self._server: PanelServer | None = None
 
     def open(self) -> str:
@@ -89,7 +92,7 @@ class TeachingDesk:
                     file=self._inbox,
                 ) from error
         setup = self._setup
-        meshcat = keep(Meshcat(MeshcatParams(host=self.host, show_stats_plot=False)))
+        meshcat = page_meshcat(self.host)
         name = setup.scenario.name
         self._scene = Scene(
             meshcat, setup.robot, setup.table, setup.objects, setup.area, scenario=name
@@ -175,28 +178,32 @@ class TeachingDesk:
 
     def _look(self, lesson: DeskLesson) -> bool:
         """Read what was dropped into the watched folder; a folder still growing has to wait."""
-        for folder, when, whole in self._dropped():
-            patience = LOOK if whole else 5.0 * LOOK
-            if self._seen.get(folder) != when and time.time() - when > patience:
-                self._seen[folder] = when
+        now = time.monotonic()
+        for folder, files in self._dropped():
+            if self._since.get(folder, ((), 0.0))[0] != files:
+                self._since[folder] = files, now
+            patience = LOOK if len(files) == 2 else 5.0 * LOOK
+            if self._seen.get(folder) != files and now - self._since[folder][1] > patience:
+                self._seen[folder] = files
                 words = lesson.take(folder)
                 todo = "mend it, or drop another" if lesson.leading else "accept or repeat it"
                 self.announce(f"{words}\n{todo}: {self.url}")
                 return True
         return False
 
-    def _dropped(self) -> list[tuple[Path, float, bool]]:
-        """Recordings in the watched folder, when each was last changed in s, and if it is whole."""
+    def _dropped(self) -> list[tuple[Path, _Files]]:
+        """Recordings in the watched folder, and which files they have."""
         if self._inbox is None or not self._inbox.is_dir():
             return []
         found = []
         for folder in sorted(self._inbox.iterdir()):
-            times = []
+            files = []
             for name in (JOINTS, OBJECTS):
                 with suppress(OSError):
-                    times.append((folder / name).stat().st_mtime)
-            if times:
-                found.append((folder, max(times), len(times) == 2))
+                    there = (folder / name).stat()
+                    files.append((name, there.st_size, there.st_mtime_ns))
+            if files:
+                found.append((folder, tuple(files)))
         return found
 
 

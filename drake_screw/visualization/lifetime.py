@@ -8,18 +8,25 @@ alive), so it is the collector that ends it.
 from __future__ import annotations
 
 import gc
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from pydrake.geometry import Meshcat
+from pydrake.geometry import Meshcat, MeshcatParams
 
 _KEPT: list[Meshcat] = []
 
 
-def keep(meshcat: Meshcat) -> Meshcat:
-    """Let a Meshcat that a page shows live as long as the program; there are few of them."""
-    _KEPT.append(meshcat)
-    return meshcat
+def page_meshcat(host: str) -> Meshcat:
+    """A Meshcat behind a page. It lives as long as the program; there are few of them.
+
+    It takes any free port, and not the first after 7000 as Meshcat would by itself: that may be the
+    one that is wanted for the page. To be called in the main thread, where it will end.
+    """
+    with socket.create_server((host, 0)) as free:
+        port = free.getsockname()[1]
+    _KEPT.append(Meshcat(MeshcatParams(host=host, port=port, show_stats_plot=False)))
+    return _KEPT[-1]
 
 
 @contextmanager

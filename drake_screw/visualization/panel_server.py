@@ -7,6 +7,8 @@ comes over Meshcat's web socket as ever.
 
 from __future__ import annotations
 
+import http.client
+import ipaddress
 import json
 import queue
 import socket
@@ -27,8 +29,11 @@ WAIT = 20.0
 LAST = 1.0
 """s. For so long the last state is kept for pages that do not ask for it just then."""
 
-EVERYWHERE = ("0.0.0.0", "::")
+EVERYWHERE = ("0.0.0.0",)
 """Addresses that stand for all of this machine's."""
+
+_DIRECT = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+_LARGEST = 1e9
 
 _SOCKET = """<script>
 // Meshcat would connect again to whatever program comes next on its port, and load its page.
@@ -62,10 +67,17 @@ def check_address(host: str, port: int | None) -> None:
 
 
 def warning(host: str) -> str | None:
-    """What to tell people before a page is served on an address; None on localhost."""
-    if host == "localhost":
+    """What to tell people before a page is served on an address; None if only for this machine."""
+    if _for_this_machine(host):
         return None
     return f"warning: served on {host} to everyone who can reach this machine, without a password"
+
+
+def _for_this_machine(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
 
 
 def _unusable(host: str, port: int | None, error: Exception) -> DrakeScrewError:
@@ -106,6 +118,7 @@ class PanelServer:
         self._changed = threading.Condition()
         self._messages: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         self._closed = False
+        self._private = _for_this_machine(host)
         self._waiting, self._sent = 0, 0
         here = "localhost" if host in EVERYWHERE else host
         meshcat = f"http://{here}:{meshcat_port}"
@@ -146,7 +159,10 @@ class PanelServer:
             return None
 
     def close(self) -> None:
-        """Stop serving once open pages have the last state; closed ones are not waited for."""
+        """Stop serving the panel once open pages have the last state.
+
+        Pages that were closed are not waited for. Meshcat itself serves until it ends.
+        """
 
         def told() -> bool:
             return self._waiting == 0 and self._sent in (0, self._version)
@@ -177,10 +193,10 @@ class PanelServer:
                     self._changed.notify_all()
             return
         try:
-            with urllib.request.urlopen(meshcat + request.path) as answer:
+            with _DIRECT.open(meshcat + request.path, timeout=WAIT) as answer:
                 kind = answer.headers.get("Content-Type", "application/octet-stream")
                 content = answer.read()
-        except urllib.error.URLError as error:
+        except (OSError, ValueError, http.client.HTTPException) as error:
             code = getattr(error, "code", 502)
             _answer(request, code, "text/plain", str(error).encode())
             return
@@ -190,7 +206,15 @@ class PanelServer:
         _answer(request, 200, kind, content)
 
     def _post(self, request: BaseHTTPRequestHandler) -> None:
-        """Other sites' pages cannot send this type without being asked about it first."""
+        """Takes a message of the page.
+
+        Other sites' pages cannot send this type without being asked about it first, nor by giving
+        their own name to this machine's address.
+        """
+        name = urlsplit(f"//{request.headers.get('Host', '')}").hostname or ""
+        if self._private and not _for_this_machine(name):
+            _answer(request, 403, "text/plain", b"this page is for localhost")
+            return
         if request.headers.get("Content-Type") != "application/json":
             _answer(request, 415, "text/plain", b"expected application/json")
             return
@@ -198,11 +222,20 @@ class PanelServer:
             message = json.loads(request.rfile.read(int(request.headers["Content-Length"])))
         except (ValueError, TypeError):
             message = None
-        if not isinstance(message, dict):
-            _answer(request, 400, "text/plain", b"expected a JSON object")
+        if not isinstance(message, dict) or not all(map(_plain, message.values())):
+            _answer(request, 400, "text/plain", b"expected a JSON object of words and numbers")
             return
         self._messages.put(message)
         _answer(request, 204, "text/plain", b"")
+
+
+def _plain(value: Any) -> bool:
+    """Whether a value may stand in a message: a word, nothing, or numbers of a sensible size."""
+    if isinstance(value, list):
+        return all(map(_plain, value))
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return -_LARGEST <= value <= _LARGEST
+    return value is None or isinstance(value, str)
 
 
 class _Server(ThreadingHTTPServer):

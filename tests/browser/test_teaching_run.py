@@ -136,7 +136,7 @@ def test_a_run_goes_on_with_what_is_given_by_clicks_alone(browser, tmp_path) -> 
     assert [d["name"] for d in told["demonstrations"]] == ["demo_01", "demo_02"]
     assert all("led by hand, 0 cm" in d["remark"] for d in told["demonstrations"])
     inspection = open_inspection(run)
-    stored, _ = inspection.run._stored(0)
+    stored, _ = inspection.run.stored(0)
     assert np.allclose(stored.q[-1], first, atol=2e-3)
     assert np.abs(stored.q[-1] - stored.q[0]).max() > 0.1
     assert len(inspection.event(1).demonstrations) == 2

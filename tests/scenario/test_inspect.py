@@ -16,14 +16,15 @@ import pytest
 from rich.console import Console
 
 from drake_screw import cli
-from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.acquisition import Finished
+from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause
 from drake_screw.scenario.choice import changed, choose, steps
-from drake_screw.scenario.inspect import inspect, instance_table
+from drake_screw.scenario.inspect import inspect, instance_table, save_page
 from drake_screw.scenario.inspection import open_inspection
 from drake_screw.scenario.runner import open_run
 from drake_screw.scenario.stage import Stage
-from drake_screw.visualization.lifetime import keep
+from drake_screw.visualization.lifetime import page_meshcat
 from tests.small_runs import finished_run
 
 __all__ = ["finished_run"]
@@ -339,8 +340,7 @@ def test_half_a_million_instances_are_thinned_and_open_quickly(inspection, monke
     other = open_inspection(inspection.run.directory.path)
     monkeypatch.setattr(other, "event", lambda round: replace(event, evaluation=large))
     begun = time.process_time()
-    stage = Stage(other)
-    keep(stage.meshcat)
+    stage = Stage(other, page_meshcat("localhost"))
     state = stage.show(choose(other, 1), live=True)
     assert time.process_time() - begun < 5.0
     assert state["map_words"].endswith(
@@ -348,6 +348,27 @@ def test_half_a_million_instances_are_thinned_and_open_quickly(inspection, monke
     )
     assert len(json.dumps(state)) < 500_000
     assert len(stage.meshcat.StaticHtml()) < 10e6
+
+
+def test_a_page_is_not_overwritten_by_its_numbers(inspection, tmp_path) -> None:
+    choice = choose(inspection, 1)
+    for name in ("page.json", "page.csv"):
+        with pytest.raises(DrakeScrewError, match="its own numbers"):
+            save_page(inspection, choice, tmp_path / name)
+    (tmp_path / "file").touch()
+    with pytest.raises(DrakeScrewError, match="cannot be written"):
+        save_page(inspection, choice, tmp_path / "file" / "page.html")
+    assert [file.name for file in tmp_path.iterdir()] == ["file"]
+
+
+def test_whoever_stops_listening_at_the_end_leaves_a_finished_run(finished_run, tmp_path) -> None:
+    copy = shutil.copytree(finished_run, tmp_path / "copy")
+    ended = json.loads((copy / "run.json").read_text())["status"]
+    run = open_run(copy)
+    for event in run.events():
+        if isinstance(event, Finished):
+            break
+    assert json.loads((copy / "run.json").read_text())["status"] == ended
 
 
 def test_new_rounds_of_a_running_run_are_found(copy) -> None:

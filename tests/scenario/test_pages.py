@@ -6,6 +6,7 @@ import gc
 import socket
 import urllib.request
 from collections.abc import Iterator
+from contextlib import suppress
 from urllib.parse import urlsplit
 
 import numpy as np
@@ -18,6 +19,7 @@ from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.lesson import DeskLesson
 from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.scenario.pages import Pages, check_pages, open_pages
+from drake_screw.visualization.panel_server import check_address
 
 INTERACTIVE = "teacher={kind: interactive}"
 
@@ -118,6 +120,17 @@ def test_ports_are_checked_before_a_run_begins(taken) -> None:
     check_pages(interactive, False, "localhost", None)
 
 
+def test_a_page_gets_the_port_that_meshcat_would_take_next(console, opened) -> None:
+    """Meshcat by itself takes the first free port from 7000 on."""
+    for port in range(7000, 7100):
+        with suppress(DrakeScrewError):
+            check_address("localhost", port)
+            break
+    setup = Setup(load_scenario("pouring", ["meshcat=true"]))
+    opened.append(open_pages(setup, console, port=port))
+    assert "<title>pouring</title>" in read(f"http://localhost:{port}/")
+
+
 def test_a_folder_that_cannot_be_watched(tmp_path) -> None:
     (tmp_path / "file").write_text("in the way")
     teacher = f"teacher={{kind: interactive, folder: {tmp_path / 'file'}}}"
@@ -138,6 +151,7 @@ def test_nonsense_does_not_move_the_arm(console, opened) -> None:
         {"hand": 6, "value": 0.1},
         {"joint": 7, "value": 0.1},
         {"joint": 0, "value": float("inf")},
+        {"hand": 3, "value": float("nan")},
         {"do": "accept"},
         {"do": "_restart"},
         {"do": 3},
@@ -146,6 +160,8 @@ def test_nonsense_does_not_move_the_arm(console, opened) -> None:
         lesson.hear(message)
         assert not lesson.step(), message
     assert not lesson.over
+    lesson.hear({"hand": 3, "value": 1e300})
+    lesson.step()
     lesson.hear({"joint": 3, "value": 99.0})
     while lesson.step():
         pass

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from pydrake.geometry import Meshcat, MeshcatParams
+from pydrake.geometry import Meshcat
 
 from drake_screw.acquisition.events import Evaluation, RoundFinished, Suggestion
 from drake_screw.bandits import Verdict
@@ -14,7 +14,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.screws import pose_from_planar
 from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, draw, grid_regions
-from drake_screw.visualization.lifetime import keep
+from drake_screw.visualization.lifetime import page_meshcat
 
 BOWL = ObjectArea("bowl", (0.6, -0.3, 0.0), (1.0, 0.9, 0.0), 0.1)
 
@@ -23,7 +23,7 @@ MakeRound = Callable[..., RoundFinished]
 
 @pytest.fixture(scope="module")
 def meshcat() -> Meshcat:
-    return keep(Meshcat(MeshcatParams(host="localhost")))
+    return page_meshcat("localhost")
 
 
 @pytest.fixture

@@ -12,12 +12,13 @@ from drake_screw.visualization.lifetime import scratch
 LEFT_BEHIND = """
 import gc, sys, threading
 from pydrake.geometry import Meshcat, MeshcatParams
-from drake_screw.visualization.lifetime import keep, scratch
+from drake_screw.visualization.lifetime import page_meshcat, scratch
 
 def leave() -> None:
-    meshcat = Meshcat(MeshcatParams(host="localhost"))
-    if sys.argv[1] == "keep":
-        keep(meshcat)
+    if sys.argv[1] == "page":
+        meshcat = page_meshcat("localhost")
+    else:
+        meshcat = Meshcat(MeshcatParams(host="localhost"))
     cycle = [meshcat]
     cycle.append(cycle)
 
@@ -33,7 +34,7 @@ print("alive", flush=True)
 """
 
 
-@pytest.mark.parametrize("way", ["keep", "scratch"])
+@pytest.mark.parametrize("way", ["page", "scratch"])
 def test_no_other_thread_ends_a_meshcat(way) -> None:
     done = subprocess.run(
         [sys.executable, "-c", LEFT_BEHIND, way], capture_output=True, text=True, timeout=120

@@ -115,4 +115,28 @@ def test_addresses_are_checked_and_warned_of(server) -> None:
         check_address("nowhere.invalid", None)
     check_address("localhost", None)
     assert warning("localhost") is None
+    assert warning("127.0.0.1") is None
     assert "without a password" in (warning("0.0.0.0") or "")
+
+
+@pytest.mark.parametrize("value", ["1e300", "NaN", "Infinity", "true", "[1, -1e10]", '{"a": 1}'])
+def test_numbers_that_no_slider_has_are_refused(server, value) -> None:
+    assert post(server, b'{"hand": 1, "value": ' + value.encode() + b"}") == 400
+    assert server.message(0.0) is None
+    assert post(server, b'{"at": [0.5, -1], "region": null, "do": "stop"}') == 204
+
+
+def test_a_page_of_another_name_for_this_machine_is_refused(server) -> None:
+    port = urlsplit(server.url).port
+    headers = {"Content-Type": "application/json", "Host": f"elsewhere.example:{port}"}
+    request = urllib.request.Request(server.url + "do", b'{"do": "accept"}', headers)
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        urllib.request.urlopen(request, timeout=10)
+
+
+def test_a_proxy_is_not_asked_for_meshcats_page(server, monkeypatch) -> None:
+    monkeypatch.setenv("http_proxy", "http://localhost:9")
+    monkeypatch.delenv("no_proxy", raising=False)
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+    with opener.open(server.url, timeout=10) as answer:
+        assert b"my panel" in answer.read()

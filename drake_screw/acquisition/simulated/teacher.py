@@ -74,7 +74,7 @@ class SimulatedTeacher:
             raise ScenarioError(message, remedy=remedy)
         self.workcell = workcell
         self.area = area
-        self.motion = motion if isinstance(motion, str) else motion.__name__
+        self.motion = motion if isinstance(motion, str) else getattr(motion, "__name__", "motion")
         self._paths = MOTIONS[motion] if isinstance(motion, str) else motion
         self._chain = workcell.arm.screw_chain()
 

@@ -12,6 +12,7 @@ import os
 import platform
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 
@@ -93,6 +94,7 @@ def load(text: str) -> ModuleType:
     if not path.exists() or path.read_text() != text:
         with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
             file.write(text)
+        os.chmod(file.name, 0o644)
         os.replace(file.name, path)
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
@@ -111,7 +113,8 @@ def is_compiled(module: ModuleType) -> bool:
 def mark_compiled(module: ModuleType) -> None:
     """Remember that the module has been used, and so compiled and cached."""
     if not is_compiled(module):
-        _mark(module).touch()
+        with suppress(OSError):
+            _mark(module).touch()
 
 
 def _mark(module: ModuleType) -> Path:

@@ -26,18 +26,19 @@ function tell(message) {
 async function listen(update) {
   let seen = 0;
   for (;;) {
+    let told = null;
     try {
       const answer = await fetch("state?after=" + seen);
       if (document.body.classList.contains("gone")) location.reload();
-      if (answer.status === 200) {
-        const { version, state } = await answer.json();
-        seen = version;
-        update(state);
-      }
+      if (answer.status === 200) told = await answer.json();
     } catch (error) {
       seen = 0;
       document.body.classList.add("gone");
       await new Promise((wake) => setTimeout(wake, 1000));
+    }
+    if (told) {
+      seen = told.version;
+      try { update(told.state); } catch (error) { console.error(error); }
     }
   }
 }
