@@ -239,7 +239,9 @@ def study(
     resume: Annotated[
         Path | None, typer.Option(metavar="STUDY", help="Carry an interrupted study on.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(help="Processes. Default: all processors.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes. Default: all processors.", min=1)
+    ] = None,
     set_: SetOption = None,
 ) -> None:
     """Measure how many demonstrations a certificate takes.
@@ -271,7 +273,9 @@ def study(
 @app.command(epilog="Example:  drake-screw inspect runs/pouring/TIME --html failing.html")
 def inspect(
     run: RunArgument,
-    round: Annotated[int | None, typer.Option(help="Round, from 1. Default: the last.")] = None,
+    round: Annotated[
+        int | None, typer.Option(help="Round, from 1. Default: the last that asked.")
+    ] = None,
     instance: Annotated[
         int | None, typer.Option(help="Row of the round's instances, from 0. Default: suggested.")
     ] = None,
@@ -283,7 +287,8 @@ def inspect(
 ) -> None:
     """See why an instance fails.
 
-    In the terminal, and in Meshcat or on a page that can be kept.
+    In the terminal, and in Meshcat or on a page that can be kept. It begins with the last round
+    that asked for a demonstration, at the instance where it did.
     """
     from drake_screw.scenario.inspect import inspect as carry_out
 
@@ -298,7 +303,9 @@ def execute(
     graphviz: Annotated[
         bool, typer.Option("--graphviz", help="Print the simulated diagram for dot, and stop.")
     ] = False,
-    workers: Annotated[int | None, typer.Option(help="Processes. Default: all processors.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes. Default: all processors.", min=1)
+    ] = None,
 ) -> None:
     """Simulate plans of a run, and check what the robot does.
 

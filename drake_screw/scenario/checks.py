@@ -22,6 +22,10 @@ Keys = tuple[str | int, ...]
 """The way to a value in the file: names of keys, and places in lists, counted from 0."""
 
 
+MOST_REGIONS = 4096
+"""Of a grid. Every region takes some samples in every round, and its place in every picture."""
+
+
 @dataclass(frozen=True)
 class Problem:
     """What is wrong with the value at `keys`, and what the user can do about it."""
@@ -52,7 +56,7 @@ def find_problems(scenario: Scenario) -> tuple[Problem, ...]:
     return tuple(_block(scenario, ())) or tuple(
         problem
         for rule in (
-            *(_robot, _objects, _regions, _grid, _coverage),
+            *(_robot, _objects, _regions, _grid, _number_of_regions, _coverage),
             *(_demonstrations, _teacher, _recorded_on),
         )
         for problem in rule(scenario)
@@ -187,6 +191,16 @@ def _regions(scenario: Scenario) -> Iterator[Problem]:
             ("coverage", "options"),
             "adaptive regions bring a strategy of their own, which has no options here",
             "Leave the options out; what can be chosen is in regions.adaptive.",
+        )
+
+
+def _number_of_regions(scenario: Scenario) -> Iterator[Problem]:
+    K = math.prod(count for counts in scenario.cells for count in counts)
+    if K > MOST_REGIONS:
+        yield Problem(
+            ("regions", "grid"),
+            f"{K:,} regions; a grid has {MOST_REGIONS:,} at most",
+            "Write smaller numbers, or `adaptive: {}` for cells that get small only where needed.",
         )
 
 

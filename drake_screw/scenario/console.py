@@ -120,11 +120,11 @@ def round_table(verdict: Verdict, regions: Regions) -> Table:
         shown = np.argsort(-np.nan_to_num(verdict.estimates), kind="stable")[:_ROWS]
         title = f"the {_ROWS} regions that fail most, of {regions.K}"
     table = Table(title=title, box=None, pad_edge=False, padding=(0, 1, 0, 0))
-    table.add_column("region", justify="right")
-    table.add_column("where", no_wrap=True)
+    table.add_column("region", justify="right", no_wrap=True)
+    table.add_column("where", overflow="fold", min_width=24)
     for name in ("samples", "failures", "rate", "at most"):
-        table.add_column(name, justify="right")
-    table.add_column("")
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
     for j in shown.tolist():
         weakest = j == verdict.region
         table.add_row(
@@ -134,7 +134,7 @@ def round_table(verdict: Verdict, regions: Regions) -> Table:
             f"{verdict.failures[j]:,}",
             f"{verdict.estimates[j]:.4f}",
             f"{verdict.upper[j]:.4f}",
-            _bar(verdict.estimates, j) + (" < weakest" if weakest else ""),
+            _bar(verdict.estimates, j) + (" <" if weakest else ""),
             style="bold" if weakest else None,
         )
     return table

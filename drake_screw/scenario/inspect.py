@@ -43,7 +43,7 @@ def inspect(
     Args:
         run: its directory, finished or not.
         console: to write to.
-        round: counted from 1; the last one if None.
+        round: counted from 1; if None the last one that asked for a demonstration.
         instance: a row of the round's instances, from 0; if None the suggested one, or the
             earliest failing.
         html: a page to write, with its numbers beside it; if None, serve until interrupted.
@@ -59,7 +59,8 @@ def inspect(
         serve(inspection, choice, console, host=host, port=port)
     else:
         tell_instance(inspection, choice, console)
-        console.print(f"written: {save_page(inspection, choice, html)}", soft_wrap=True)
+        page = save_page(inspection, choice, html)
+        console.print(f"written: {page}, its numbers beside it (.csv, .json)", soft_wrap=True)
 
 
 def serve(

@@ -63,13 +63,20 @@ class Inspection:
         return self.rounds > before
 
     def check_round(self, number: int | None) -> int:
-        """A round's index from its number as people count, or that of the last round.
+        """A round's index from its number as people count, or the one to begin with.
+
+        That is the last one that asked for a demonstration, or the last one if none did.
 
         Raises:
             ScenarioError: there is no such round.
         """
         if number is None:
-            return self.rounds - 1
+            asked = [
+                i
+                for i, entry in enumerate(self.run.directory.record["rounds"])
+                if entry.get("next_demonstration") is not None
+            ]
+            return asked[-1] if asked else self.rounds - 1
         if not 1 <= number <= self.rounds:
             raise ScenarioError(
                 f"no round {number}", remedy=f"This run has rounds 1 to {self.rounds}."

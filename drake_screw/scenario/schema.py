@@ -148,7 +148,7 @@ class CoverageBlock:
     epsilon: float = key(
         "accuracy to which failure probabilities are measured; below 1 - beta",
         default=0.02,
-        above=0,
+        at_least=1e-4,
         below=1,
     )
     delta: float = key(
@@ -243,7 +243,9 @@ class SegmentationBlock:
 
 @dataclass(frozen=True, kw_only=True)
 class PlannerBlock:
-    tolerance: float = key("error per step of the joint path", unit="rad", default=1e-4, above=0)
+    tolerance: float = key(
+        "error per step of the joint path", unit="rad", default=1e-4, at_least=1e-9, below=0.1
+    )
     collision: bool = key(
         "whether a plan that touches the robot itself, the table or an object fails",
         default=False,

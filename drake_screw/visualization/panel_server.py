@@ -34,6 +34,7 @@ EVERYWHERE = ("0.0.0.0",)
 
 _DIRECT = urllib.request.build_opener(urllib.request.ProxyHandler({}))
 _LARGEST = 1e9
+"""No number of a message is larger."""
 
 _SOCKET = """<script>
 // Meshcat would connect again to whatever program comes next on its port, and load its page.
@@ -83,7 +84,7 @@ def _for_this_machine(host: str) -> bool:
 def _unusable(host: str, port: int | None, error: Exception) -> DrakeScrewError:
     return DrakeScrewError(
         f"cannot serve on {host}" + (f", port {port}" if port else "") + f": {error}",
-        remedy="Choose another --port, or leave it out for any free one.",
+        remedy="Choose another --host or --port; without them it is localhost and any free port.",
     )
 
 
