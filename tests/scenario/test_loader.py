@@ -475,6 +475,20 @@ def test_override_errors_name_the_override(
     assert (remedy or "") in (error.remedy or "")
 
 
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("regions.grid={x: 65, y: 64}", "4,160 regions; a grid has 4,096 at most"),
+        ("coverage.epsilon=1e-9", "at least 0.0001"),
+        ("planner.tolerance=100", "below 0.1"),
+    ],
+)
+def test_what_no_machine_can_carry_out_is_refused(override: str, message: str) -> None:
+    with pytest.raises(ScenarioError, match=message):
+        load_scenario("pouring", [override])
+    load_scenario("pouring", ["regions.grid={x: 64, y: 64}"])
+
+
 numbers = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e300, max_value=1e300)
 positive = st.floats(min_value=5e-324, max_value=1e300)
 texts = st.text(
@@ -508,7 +522,7 @@ def scenarios(draw: st.DrawFn) -> Scenario:
     free = [f"{o.name}.{axis}" for o in objects for axis in AXES if not getattr(o, axis).fixed]
     beta = draw(st.floats(min_value=0.01, max_value=0.99))
     options = st.booleans() | st.integers() | numbers | texts
-    regions = RegionsBlock(grid={k: draw(st.integers(1, 9)) for k in free})
+    regions = RegionsBlock(grid={k: draw(st.integers(1, 4)) for k in free})
     if free and draw(st.booleans()):
         shares = st.floats(min_value=1e-9, max_value=1.0, exclude_max=True)
         regions = RegionsBlock(adaptive=AdaptiveBlock(smallest=draw(shares), level=draw(shares)))
@@ -536,7 +550,7 @@ def scenarios(draw: st.DrawFn) -> Scenario:
         regions=regions,
         coverage=CoverageBlock(
             beta=beta,
-            epsilon=draw(st.floats(min_value=1e-9, max_value=0.9)) * (1 - beta),
+            epsilon=draw(st.floats(min_value=0.02, max_value=0.9)) * (1 - beta),
             options=draw(st.dictionaries(texts, options, max_size=3))
             if regions.adaptive is None
             else {},
