@@ -178,7 +178,12 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         ),
         (with_block("coverage", beta=1.0), "coverage.beta", "above 0 and below 1, found 1.0", ""),
         (with_block("coverage", delta=0.0), "coverage.delta", "above 0 and below 1", "confidence"),
-        (with_block("coverage", epsilon=0.0), "coverage.epsilon", "at least 0.0001 and below 1", ""),
+        (
+            with_block("coverage", epsilon=0.0),
+            "coverage.epsilon",
+            "at least 0.0001 and below 1",
+            "",
+        ),
         (with_block("coverage", epsilon=0.05), "coverage.epsilon", "could never stop", "0.05"),
         (with_block("coverage", beta=0.9, epsilon=0.1), "coverage.epsilon", "never stop", "0.1"),
         (
@@ -217,7 +222,12 @@ def test_another_robot_may_have_made_the_recordings() -> None:
             "of at least 1",
             "",
         ),
-        (replace(GOOD, planner=PlannerBlock(tolerance=0.0)), "planner.tolerance", "at least 1e-09", ""),
+        (
+            replace(GOOD, planner=PlannerBlock(tolerance=0.0)),
+            "planner.tolerance",
+            "at least 1e-09",
+            "",
+        ),
     ],
 )
 def test_rules(scenario: Scenario, path: str, message: str, remedy: str) -> None:
