@@ -11,7 +11,7 @@ from fine_steps import fine_outcomes
 from task import Task
 
 from drake_screw.planning import BatchPlanner, Outcomes, ReferencePlanner
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 SLACK = 0.005  # rad, of the joint limits that may explain a disagreement
 RACING = 20.0  # joint rate per hand motion that only the edge of reach explains

@@ -21,7 +21,7 @@ from task import TASKS, Task, load_task
 from drake_screw.planning import BatchPlanner, Cause, Outcomes
 from drake_screw.planning.batch import EVALUATIONS_PER_STEP
 from drake_screw.planning.compiled import Kernel, Settings
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 TIGHTEST = 1e-9

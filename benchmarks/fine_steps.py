@@ -14,16 +14,17 @@ import numpy as np
 
 from drake_screw.planning import Cause
 from drake_screw.planning.contract import (
-    LENGTH,
-    MISFIT_LIMIT,
     ORIENTATION_MIN,
     POSITION_TOLERANCE,
     RATE_LIMIT,
+    RESIDUAL_LIMIT,
     ROTATION_TOLERANCE,
+    hand_motion,
 )
 from drake_screw.robot import ScrewChain
-from drake_screw.screws import inverse, log, pose, rotation_angle, translation_distance
-from drake_screw.screws.rotations import Array, cross, skew
+from drake_screw.screws import inverse, log, pose, rotation_angle, shift, translation_distance
+from drake_screw.screws.rotations import cross, skew
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)
@@ -79,12 +80,6 @@ def rates(J: Array, V: Array) -> tuple[Array, Array]:
     return dq[..., 0], V - (J @ dq)[..., 0]
 
 
-def hand_motion(V: Array, X_WE: Array) -> Array:
-    """sqrt(turn^2 + (travel / LENGTH)^2) of twists (M, 6)."""
-    v_E = V[:, 3:] + cross(V[:, :3], X_WE[:, :3, 3])
-    return np.hypot(np.linalg.norm(V[:, :3], axis=1), np.linalg.norm(v_E, axis=1) / LENGTH)
-
-
 def fine_outcomes(
     chain: ScrewChain,
     q_start: Array,
@@ -123,13 +118,15 @@ def fine_outcomes(
         X_WE, J = arm(q[live])
         goal = X_WG[live, segment[live]]
         V = log(goal @ inverse(X_WE)) / (1.0 - s[live])[:, None]
-        size[live] = np.where(s[live] == 0.0, hand_motion(V, X_WE), size[live])
+        size[live] = np.where(s[live] == 0.0, hand_motion(shift(V, X_WE[:, :3, 3])), size[live])
         k1, rest = rates(J, V)
         rate = np.linalg.norm(k1, axis=1)
         ratio = rate / np.maximum(size[live], 1e-12)
         out.rate[live] = np.maximum(out.rate[live], ratio)
         stuck = rate > rate_limit * size[live]
-        stuck |= hand_motion(rest, X_WE) * (1.0 - s[live]) > MISFIT_LIMIT * size[live]
+        stuck |= (
+            hand_motion(shift(rest, X_WE[:, :3, 3])) * (1.0 - s[live]) > RESIDUAL_LIMIT * size[live]
+        )
         live = _end(out, live, segment, stuck, Cause.UNREACHABLE)
         V, k1, rate = V[~stuck], k1[~stuck], rate[~stuck]
         if not len(live):

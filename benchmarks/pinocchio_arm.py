@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from drake_screw.robot import ScrewChain
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 
 class PinocchioArm:

@@ -31,7 +31,7 @@ from pinocchio_arm import PinocchioArm
 from task import TASKS, Task, load_task
 
 from drake_screw.planning import BatchPlanner, ReferencePlanner
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 BATCH = 16_384
 

@@ -13,8 +13,8 @@ from drake_screw.robot import Arm
 from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.scenario.swap import swap_model
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import GridRegions
+from drake_screw.typing import Array
 
 TASKS = ("pouring", "scooping")
 

@@ -12,8 +12,8 @@ from drake_screw.acquisition.events import Evaluation, RegionsEvaluated
 from drake_screw.bandits import Strategy, Verdict
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Outcomes, Planner, concatenate
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import GridRegions, draw
+from drake_screw.typing import Array
 
 BATCH = 16_384
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from drake_screw.bandits import Cell, Verdict
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.planning import Outcomes
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import Regions, box_regions
+from drake_screw.typing import Array
 
 
 class Status(StrEnum):

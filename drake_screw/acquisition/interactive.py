@@ -16,8 +16,8 @@ from drake_screw.acquisition.events import Suggestion
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import Recording
 from drake_screw.robot import Arm
-from drake_screw.screws import inverse, log
-from drake_screw.screws.rotations import Array
+from drake_screw.screws import inverse, log, shift
+from drake_screw.typing import Array
 
 KEEP_OFF = 2e-3
 """rad or m. The arm is led no nearer to a limit than this."""
@@ -98,7 +98,7 @@ class LedArm:
         """One step of the hand towards a pose (4, 4); returns whether the arm moved."""
         X_WE_now, J_WE = self.arm.pose_and_jacobian(self.q)
         V = log(np.asarray(X_WE, dtype=float) @ inverse(X_WE_now))
-        V_WE = np.concatenate([V[:3], V[3:] + np.cross(V[:3], X_WE_now[:3, 3])])
+        V_WE = shift(V, X_WE_now[:3, 3])
         size = max(np.linalg.norm(V_WE[:3]) / TURN, np.linalg.norm(V_WE[3:]) / SPEED)
         if size < 1e-4:
             self.stuck = False

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from drake_screw.acquisition.events import Suggestion
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import Recording
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import Regions
+from drake_screw.typing import Array
 
 
 class Foreign(Protocol):

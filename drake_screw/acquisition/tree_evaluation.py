@@ -9,8 +9,8 @@ from drake_screw.acquisition.events import Evaluation, RegionsEvaluated
 from drake_screw.bandits import Cell, CertifyOrSplit, TreeVerdict, Verdict, cell_number
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Outcomes, Planner, concatenate
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import WorkArea, free_axes, from_unit_box, uniform
+from drake_screw.typing import Array
 
 
 class TreeEvaluator:

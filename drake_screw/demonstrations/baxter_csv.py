@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.errors import RecordingError, nearest
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 _ARM = ("s0", "s1", "e0", "e1", "w0", "w1", "w2", "gripper")
 COLUMNS = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in _ARM)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from drake_screw.demonstrations.recording import Recording
 from drake_screw.demonstrations.segmentation import SegmentationConfig, guiding_poses
 from drake_screw.robot.arm import Arm
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)

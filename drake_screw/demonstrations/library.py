@@ -11,7 +11,7 @@ from drake_screw.demonstrations.baxter_csv import csv_text, read_csv, read_lines
 from drake_screw.demonstrations.recording import Recording, checked
 from drake_screw.errors import RecordingError
 from drake_screw.screws import normalized
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 JOINTS, OBJECTS, REGION = "joint_angles.csv", "object_poses.csv", "region_of_interest.txt"
 

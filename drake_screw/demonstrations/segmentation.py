@@ -19,7 +19,7 @@ from drake_screw.screws import (
     sclerp_position,
     translation_distance,
 )
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 _TOGETHER = 24  # end poses judged at a time
 

@@ -15,7 +15,7 @@ from drake_screw.execution.station import Station, build_station
 from drake_screw.execution.timing import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Plan, ReferencePlanner
 from drake_screw.robot import Arm, ObjectConfig, RobotConfig, TableConfig
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 PLAN_STEP = 0.02  # of the reference planner
 KEPT = 8  # of that many samples of a log, one comes back from another process

@@ -10,7 +10,7 @@ import numpy as np
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.robot import Arm
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,8 @@ from drake_screw.execution.checks import (
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.robot import Arm
-from drake_screw.screws.rotations import Array, cross
+from drake_screw.screws import shift
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)
@@ -174,8 +175,7 @@ class ScrewPlanExecutor(LeafSystem):
         if ended is not None:
             return replace(memory, status=ended)
         V_WS = ahead.rate * plan.segments[ahead.segment].twist
-        V_WE = V_WS + np.concatenate([np.zeros(3), cross(V_WS[:3], X_WE[:3, 3])])
-        V_WE = V_WE + self.control.pose_gain * _difference(X_WE, X_WS)
+        V_WE = shift(V_WS, X_WE[:3, 3]) + self.control.pose_gain * _difference(X_WE, X_WS)
         self._parameters.set_nominal_joint_position(ahead.q)
         solution = DoDifferentialInverseKinematics(q, memory.v, V_WE, J_WE, self._parameters)
         if solution.status == DifferentialInverseKinematicsStatus.kSolutionFound:

@@ -11,7 +11,7 @@ from pydrake.geometry import Meshcat, MeshcatAnimation, MeshcatParams, Rgba
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.station import build_station
 from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 FRAMES = 20  # a second
 PAUSE = 0.6  # s, between executions

@@ -9,16 +9,17 @@ import numpy as np
 
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
-from drake_screw.planning.contract import LENGTH
+from drake_screw.planning.contract import CHARACTERISTIC_LENGTH
 from drake_screw.robot import Arm
 from drake_screw.screws import (
     exp,
     inverse,
     log,
     rotation_angle,
+    shift,
     translation_distance,
 )
-from drake_screw.screws.rotations import Array, cross
+from drake_screw.typing import Array
 
 EVERY = 4e-3  # s, between samples at which the hand is looked at
 
@@ -147,7 +148,7 @@ def make_report(
 def _ahead(X_WE: Array, X_WS: Array, twist: Array) -> Array:
     """How much farther along the screw than S the hand E is (m,), by a step of Gauss-Newton.
 
-    Rotations and translations are weighed by LENGTH, at the hand.
+    Rotations and translations are weighed by CHARACTERISTIC_LENGTH, at the hand.
     """
     V = _at_hand(log(X_WE @ inverse(X_WS)), X_WS)
     along = _at_hand(np.broadcast_to(twist, V.shape), X_WS)
@@ -156,8 +157,8 @@ def _ahead(X_WE: Array, X_WS: Array, twist: Array) -> Array:
 
 
 def _at_hand(V: Array, X_WS: Array) -> Array:
-    v = V[..., 3:] + cross(V[..., :3], X_WS[..., :3, 3])
-    return np.concatenate([V[..., :3], v / LENGTH], axis=-1)
+    V = shift(V, X_WS[..., :3, 3])
+    return np.concatenate([V[..., :3], V[..., 3:] / CHARACTERISTIC_LENGTH], axis=-1)
 
 
 def _distances(X_WA: Array, X_WB: Array) -> Array:

@@ -14,7 +14,7 @@ from drake_screw.execution.checks import failed
 from drake_screw.execution.report import Contact, ExecutionReport, make_report
 from drake_screw.execution.station import Station
 from drake_screw.execution.timing import TimedPlan
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 PATIENCE = 1.0
 """s beyond the plan's time and the follower's own patience, after which a simulation is stopped."""

@@ -36,7 +36,7 @@ from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
 from drake_screw.robot import Arm, ObjectConfig, RobotConfig, TableConfig
 from drake_screw.robot.workcell import add_object, add_robot, add_table
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 Follower = ScrewPlanExecutor | JointPathSource
 

@@ -23,7 +23,8 @@ from pydrake.trajectories import PiecewisePolynomial
 from drake_screw.planning import Plan
 from drake_screw.robot import Arm
 from drake_screw.screws import inverse, log
-from drake_screw.screws.rotations import Array, skew
+from drake_screw.screws.rotations import skew
+from drake_screw.typing import Array
 
 UNLIMITED = 1e3
 """rad/s (or m/s), put in place of an infinite velocity limit."""

@@ -12,8 +12,8 @@ import numpy as np
 from drake_screw.execution.report import ExecutionReport
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.status import Phase
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import AXES, WorkArea
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

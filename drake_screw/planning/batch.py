@@ -14,7 +14,7 @@ from drake_screw.planning.compiled import Kernel, Order, Settings
 from drake_screw.planning.outcomes import Cause, Outcomes
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import translation_distance
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 EVALUATIONS_PER_STEP = 6
 

@@ -19,7 +19,7 @@ from pydrake.multibody.tree import BodyIndex
 from drake_screw.planning.paths import Frames
 from drake_screw.robot import Workcell
 from drake_screw.screws import inverse
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 CELL = 0.1  # rad (or m), of the grid on which neighbouring links are looked at
 REACH = 0.15  # m, that a shape may extend from the points that stand for it

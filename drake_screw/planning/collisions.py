@@ -14,7 +14,7 @@ from drake_screw.planning.clearance import bubbles_of
 from drake_screw.planning.outcomes import Cause, Outcomes
 from drake_screw.planning.paths import Paths, joint_paths
 from drake_screw.robot import Workcell
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 SPACING = 0.01
 """m, at most, that the arm moves between two configurations that Drake is asked about."""

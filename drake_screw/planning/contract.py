@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from drake_screw.typing import Array
+
 POSITION_TOLERANCE = 1e-4
 """m. A segment ends at most this far from its guiding pose."""
 
 ROTATION_TOLERANCE = 1e-3
 """rad. A segment ends at most this far turned from its guiding pose."""
 
-LENGTH = 1.0
+CHARACTERISTIC_LENGTH = 1.0
 """m. What counts as much as a radian when a hand's twist is given a size."""
 
 RATE_LIMIT = 100.0
 """Joint motion for a unit of hand motion at which a pose is called unreachable.
 
-Both are Euclidean norms: of joint rates, and of the hand's spatial velocity with lengths divided
-by LENGTH. It bounds the inverse of the Jacobian's least singular value along the motion's twist.
+Both are Euclidean norms: of joint rates, and `hand_motion`. It bounds the inverse of the Jacobian's
+least singular value along the motion's twist.
 """
 
-MISFIT_LIMIT = 1e-2
+RESIDUAL_LIMIT = 1e-2
 """Part of a segment's hand motion that the joints cannot give at which a pose is unreachable.
 
 It is what J dq/ds lacks of the twist, times what is left of the segment, in RATE_LIMIT's measure of
@@ -32,3 +36,16 @@ ORIENTATION_MIN = 1e-14
 
 With six joints or fewer that tells that the path leads through a singularity in between.
 """
+
+
+def hand_motion(V_WE: Array) -> Array:
+    """Size of spatial velocities: sqrt(turn^2 + (travel / CHARACTERISTIC_LENGTH)^2).
+
+    Args:
+        V_WE: (..., 6) as [w; v], rad and m.
+
+    Returns:
+        (...) rad.
+    """
+    turn, travel = np.linalg.norm(V_WE[..., :3], axis=-1), np.linalg.norm(V_WE[..., 3:], axis=-1)
+    return np.hypot(turn, travel / CHARACTERISTIC_LENGTH)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 
 class Cause(IntEnum):

@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning.contract import LENGTH, POSITION_TOLERANCE
+from drake_screw.planning.contract import POSITION_TOLERANCE, hand_motion
 from drake_screw.robot import ScrewChain
-from drake_screw.screws import inverse, log, translation_distance
-from drake_screw.screws.rotations import Array, cross, skew
+from drake_screw.screws import inverse, log, shift, translation_distance
+from drake_screw.screws.rotations import cross, skew
+from drake_screw.typing import Array
 
 STEP = 0.08
-"""Hand motion in one step, rad and (divided by LENGTH) m together."""
+"""Hand motion in one step, rad and (divided by CHARACTERISTIC_LENGTH) m together."""
 
 REFINEMENT = 8
 """Into how many parts a step is divided where a path missed its guiding poses."""
@@ -123,9 +124,7 @@ def _follow(
 
 
 def _steps(X_WG: Array, X_WE: Array) -> int:
-    V = log(X_WG @ inverse(X_WE))
-    v = V[:, 3:] + cross(V[:, :3], X_WE[:, :3, 3])
-    size = np.hypot(np.linalg.norm(V[:, :3], axis=-1), np.linalg.norm(v, axis=-1) / LENGTH)
+    size = hand_motion(shift(log(X_WG @ inverse(X_WE)), X_WE[:, :3, 3]))
     return max(2, int(np.ceil(size.max(initial=0.0) / STEP)))
 
 

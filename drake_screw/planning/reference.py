@@ -13,17 +13,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.planning.contract import (
-    LENGTH,
-    MISFIT_LIMIT,
     ORIENTATION_MIN,
     POSITION_TOLERANCE,
     RATE_LIMIT,
+    RESIDUAL_LIMIT,
     ROTATION_TOLERANCE,
+    hand_motion,
 )
 from drake_screw.planning.outcomes import Cause, Plan, one_outcome
 from drake_screw.robot.arm import Arm
-from drake_screw.screws import inverse, log, rotation_angle, translation_distance
-from drake_screw.screws.rotations import Array
+from drake_screw.screws import inverse, log, rotation_angle, shift, translation_distance
+from drake_screw.typing import Array
 
 CORRECTIONS = 4
 
@@ -33,7 +33,7 @@ class ReferencePlanner:
 
     Args:
         arm: to plan for.
-        step: hand motion in one step, rad and (divided by LENGTH) m together.
+        step: hand motion in one step, rad and (divided by CHARACTERISTIC_LENGTH) m together.
         joint_step: rad (or m), joint motion in one step, so that steps shrink where joints race;
             at least half of `step`.
     """
@@ -82,9 +82,9 @@ class ReferencePlanner:
         size, s = self._twist(q, X_WG)[1], 0.0
         while s < 1.0:
             V = self._twist(q, X_WG)[0] / (1.0 - s)
-            rates, misfit = self._rates_and_misfit(q, V)
+            rates, residual = self._rates_and_residual(q, V)
             rate = float(np.linalg.norm(rates))
-            if rate > RATE_LIMIT * size or misfit * (1.0 - s) > MISFIT_LIMIT * size:
+            if rate > RATE_LIMIT * size or residual * (1.0 - s) > RESIDUAL_LIMIT * size:
                 return points, fractions, Cause.UNREACHABLE, -1
             h = min(self.step / max(size, 1e-12), self.joint_step / max(rate, 1e-12), 1.0 - s)
             moved = self._runge_kutta(q, h * V)
@@ -120,20 +120,18 @@ class ReferencePlanner:
         """The constant twist from here to the goal, and its size as the hand feels it."""
         X_WE = self.arm.pose(q)
         V = log(X_WG @ inverse(X_WE))
-        v_E = V[3:] + np.cross(V[:3], X_WE[:3, 3])
-        return V, float(np.hypot(np.linalg.norm(V[:3]), np.linalg.norm(v_E) / LENGTH))
+        return V, float(hand_motion(shift(V, X_WE[:3, 3])))
 
     def _rates(self, q: Array, V: Array) -> Array:
         """J^+ V, the least joint rates that give the hand the twist V (about W's origin)."""
-        return self._rates_and_misfit(q, V)[0]
+        return self._rates_and_residual(q, V)[0]
 
-    def _rates_and_misfit(self, q: Array, V: Array) -> tuple[Array, float]:
+    def _rates_and_residual(self, q: Array, V: Array) -> tuple[Array, float]:
         """`_rates`, and the size of what J times them lacks of V, as the hand feels it."""
         X_WE, J_WE = self.arm.pose_and_jacobian(q)
-        V_WE = np.concatenate([V[:3], V[3:] + np.cross(V[:3], X_WE[:3, 3])])
+        V_WE = shift(V, X_WE[:3, 3])
         rates = np.linalg.lstsq(J_WE, V_WE, rcond=None)[0]
-        rest = V_WE - J_WE @ rates
-        return rates, float(np.hypot(np.linalg.norm(rest[:3]), np.linalg.norm(rest[3:]) / LENGTH))
+        return rates, float(hand_motion(V_WE - J_WE @ rates))
 
     def _passes_singularity(self, q: Array, moved: Array) -> bool:
         """Whether J's columns change their orientation, for arms that cannot get around that.

@@ -11,7 +11,8 @@ from pydrake.multibody.tree import Frame, FrameIndex, JacobianWrtVariable, Joint
 
 from drake_screw.errors import ModelError, unknown
 from drake_screw.robot.screw_chain import ScrewChain
-from drake_screw.screws.rotations import Array
+from drake_screw.screws import shift
+from drake_screw.typing import Array
 
 
 class Arm:
@@ -124,8 +125,7 @@ class Arm:
     def screw_chain(self) -> ScrewChain:
         """The arm as a product of exponentials, read off the plant at q = 0."""
         X_WE, J_WE = self.pose_and_jacobian(np.zeros(self.n))
-        screws = J_WE.T.copy()
-        screws[:, 3:] -= np.cross(screws[:, :3], X_WE[:3, 3])
+        screws = shift(J_WE.T, -X_WE[:3, 3])
         return ScrewChain(self.joint_names, screws, X_WE, self.lower.copy(), self.upper.copy())
 
     def _set(self, q: Array) -> None:

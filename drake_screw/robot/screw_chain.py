@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.screws import adjoint, exp
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from drake_screw.errors import ModelError, unknown
 from drake_screw.resources import MODEL_SUFFIXES, find_resource
 from drake_screw.robot.arm import Arm
 from drake_screw.screws import quaternion_from_rotation
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 WOOD = np.array([0.76, 0.68, 0.56, 1.0])
 CLAY = np.array([0.93, 0.93, 0.90, 1.0])

@@ -18,8 +18,8 @@ from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.run_directory import write_folder
 from drake_screw.scenario.runner import Run, open_run
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import draw
+from drake_screw.typing import Array
 from drake_screw.visualization.lifetime import scratch
 
 ROUND = 1_000_000

@@ -10,8 +10,8 @@ import numpy as np
 
 from drake_screw.errors import ScenarioError, nearest
 from drake_screw.planning import Outcomes
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import AXES, WorkArea
+from drake_screw.typing import Array
 
 
 def read_instances(file: Path, area: WorkArea) -> Array:

@@ -19,7 +19,7 @@ from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.inspection import STEP
 from drake_screw.scenario.narration import place
 from drake_screw.screws import exp, log, pose
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 from drake_screw.visualization.attempt import Attempt, attempt, describe_segment, headline, unit
 from drake_screw.visualization.charts import STATUS_COLORS
 from drake_screw.visualization.inspector import Inspector

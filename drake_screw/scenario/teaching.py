@@ -16,7 +16,7 @@ from drake_screw.errors import RecordingError
 from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.lesson import PERIOD, DeskLesson
 from drake_screw.scenario.narration import describe
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 from drake_screw.visualization import Scene
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.inspector_panel import KEY, body, script_json

@@ -26,6 +26,7 @@ from drake_screw.screws.poses import (
     pose_from_planar,
     quaternion_distance,
     rotation_angle,
+    shift,
     translation_distance,
 )
 from drake_screw.screws.rotations import (
@@ -66,6 +67,7 @@ __all__ = [
     "sclerp_position",
     "screw_between",
     "screw_from_twist",
+    "shift",
     "skew",
     "translation_distance",
 ]

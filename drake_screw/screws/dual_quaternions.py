@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 from drake_screw.screws.interpolation import Screw, screw_from_twist
 from drake_screw.screws.poses import log, pose
 from drake_screw.screws.rotations import (
-    Array,
     quaternion_conjugate,
     quaternion_from_rotation,
     quaternion_multiply,
     rotation_from_quaternion,
 )
+from drake_screw.typing import Array
 
 
 def dual_quaternion_from_pose(X: ArrayLike) -> Array:

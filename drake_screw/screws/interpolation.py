@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from drake_screw.screws.poses import exp, inverse, log
-from drake_screw.screws.rotations import Array, cross
+from drake_screw.screws.poses import exp, inverse, log, shift
+from drake_screw.screws.rotations import cross
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)
@@ -188,9 +189,9 @@ class _OriginMotion:
     @classmethod
     def between(cls, X_WA: ArrayLike, X_WB: ArrayLike) -> _OriginMotion:
         V = log(np.asarray(X_WB) @ inverse(X_WA))
-        v = V[..., 3:] + cross(V[..., :3], np.asarray(X_WA)[..., :3, 3])
-        screw = screw_from_twist(np.concatenate([V[..., :3], v], axis=-1))
-        across = v - screw.translation[..., None] * screw.axis
+        V = shift(V, np.asarray(X_WA)[..., :3, 3])
+        screw = screw_from_twist(V)
+        across = V[..., 3:] - screw.translation[..., None] * screw.axis
         return cls(screw.axis, screw.angle, screw.translation, across, cross(screw.axis, across))
 
     def stretched(self) -> _OriginMotion:

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.screws.rotations import (
-    Array,
     cross,
     quaternion_from_rotation,
     rotation_from_quaternion,
     rotation_vector_from_quaternion,
     skew,
 )
+from drake_screw.typing import Array
 
 _SERIES_BELOW = 0.04  # rad^2; below it the power series are exact to machine precision
 
@@ -89,6 +89,29 @@ def adjoint(X_AB: ArrayLike) -> Array:
     A[..., :3, :3] = A[..., 3:, 3:] = R
     A[..., 3:, :3] = skew(X_AB[..., :3, 3]) @ R
     return A
+
+
+def shift(V: ArrayLike, p: ArrayLike) -> Array:
+    """A twist about another point: its linear part is the velocity of the body's point at p.
+
+    ``[w; v]`` about the origin becomes ``[w; v + w x p]``; shifting by -p leads back (Modern
+    Robotics, section 3.3.2). For a spatial twist V_WE and p = p_WE it is the spatial velocity of E.
+
+    Args:
+        V: (..., 6) as [w; v], rad and m.
+        p: (..., 3) m, in the frame V is expressed in; broadcast against V's leading axes.
+
+    Returns:
+        (..., 6).
+
+    A turn about the z axis carries a point on the x axis along y:
+
+    >>> shift([0.0, 0.0, 2.0, 0.0, 0.0, 0.0], [0.5, 0.0, 0.0]).tolist()
+    [0.0, 0.0, 2.0, 0.0, 1.0, 0.0]
+    """
+    V = np.asarray(V, dtype=float)
+    v = V[..., 3:] + cross(V[..., :3], p)
+    return np.concatenate([np.broadcast_to(V[..., :3], v.shape), v], axis=-1)
 
 
 def exp(V: ArrayLike) -> Array:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks.regions import ranges
 from drake_screw.tasks.work_area import WorkArea
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks.work_area import AXES, WorkArea
+from drake_screw.typing import Array
 
 
 class Regions(Protocol):

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks.regions import Regions
+from drake_screw.typing import Array
 
 CHUNK = 1024
 

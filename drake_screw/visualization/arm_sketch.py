@@ -8,8 +8,8 @@ import numpy as np
 
 from drake_screw.robot import ObjectConfig, TableConfig
 from drake_screw.screws import sclerp_position
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import WorkArea
+from drake_screw.typing import Array
 from drake_screw.visualization.attempt import FAILED, Attempt
 from drake_screw.visualization.charts import STATUS_COLORS
 from drake_screw.visualization.linkage import Linkage

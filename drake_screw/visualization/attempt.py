@@ -12,7 +12,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause, Outcomes, Plan, ReferencePlanner
 from drake_screw.robot import Arm
 from drake_screw.screws import Screw, screw_between
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 DONE, FAILED, AHEAD = "done", "failed", "never reached"
 FAR_AXIS = 1.0

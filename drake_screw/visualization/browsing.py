@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.planning import Outcomes
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 from drake_screw.visualization.rounds import Round
 
 SUCCESSES = 200

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 from matplotlib.axes import Axes
 
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 from drake_screw.visualization.palette import failure_color, ink_on
 from drake_screw.visualization.rounds import Cells, Round
 

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from drake_screw.planning import Cause
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import Regions
+from drake_screw.typing import Array
 from drake_screw.visualization.attempt import AHEAD, DONE, FAILED, Attempt, unit
 from drake_screw.visualization.palette import (
     ACCENT,

@@ -16,7 +16,7 @@ from pydrake.geometry import Meshcat
 
 from drake_screw.robot import ObjectConfig, Workcell
 from drake_screw.screws import sclerp_position
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 from drake_screw.visualization import meshes, screw_shapes
 from drake_screw.visualization.attempt import AHEAD, FAILED, Attempt, unit
 from drake_screw.visualization.charts import STATUS_COLORS

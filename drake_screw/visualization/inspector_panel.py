@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from drake_screw.planning import Cause, Outcomes
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import Regions, WorkArea
+from drake_screw.typing import Array
 from drake_screw.visualization.attempt import (
     AHEAD,
     DONE,

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from pydrake.geometry import Meshcat, Role, SceneGraph
 
 from drake_screw.robot import Arm, Workcell
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 from drake_screw.visualization.drawing import rgba
 
 HALO = 1.03

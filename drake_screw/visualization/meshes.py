@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from matplotlib.colors import Colormap, to_rgb
 from numpy.typing import ArrayLike
 
 from drake_screw.planning import Cause
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 OUTCOME_COLORS = MappingProxyType(
     {

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause, Outcomes
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import Regions
+from drake_screw.typing import Array
 
 
 class Instances(Protocol):

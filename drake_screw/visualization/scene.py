@@ -23,8 +23,8 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause
 from drake_screw.robot import Arm, ObjectConfig, RobotConfig, TableConfig
 from drake_screw.robot.workcell import add_robot, add_table
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import Regions, WorkArea
+from drake_screw.typing import Array
 from drake_screw.visualization import meshes
 from drake_screw.visualization.drawing import draw, draw_frames, rgba
 from drake_screw.visualization.page import Slide, slide, with_legend

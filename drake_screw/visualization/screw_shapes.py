@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 from drake_screw.visualization.meshes import Mesh, join, lathe, tube
 
 RADIUS = 0.06

@@ -12,7 +12,7 @@ from scipy.integrate import RK45
 from drake_screw.planning.compiled import rows as r
 from drake_screw.planning.compiled.arm_code import DAMPING
 from drake_screw.planning.compiled.step_code import ERROR, TABLEAU, Settings
-from drake_screw.planning.contract import MISFIT_LIMIT, RATE_LIMIT
+from drake_screw.planning.contract import RATE_LIMIT, RESIDUAL_LIMIT
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import adjoint, exp, log
 
@@ -104,7 +104,7 @@ def test_arrive_and_aim(n: int, sliding: float, square: bool) -> None:
     rest = V_E - (J @ want[..., None])[..., 0]
     np.testing.assert_allclose(b.block[r.HAND][clear], (V_E**2).sum(axis=1)[clear], rtol=1e-9)
     tolerance = 1e-9 * (V_E**2).sum(axis=1)[clear]
-    assert (np.abs(b.block[r.MISFIT] - (rest**2).sum(axis=1))[clear] <= tolerance + 1e-12).all()
+    assert (np.abs(b.block[r.RESIDUAL] - (rest**2).sum(axis=1))[clear] <= tolerance + 1e-12).all()
     assert (b.block[r.PROGRESS] == 0.0).all()
 
 
@@ -122,7 +122,7 @@ def test_a_step_that_is_not_taken_changes_nothing() -> None:
         slice(rows.slope(0), rows.slope(1)),
         slice(r.HAND, r.HAND + 1),
         slice(r.PROGRESS, r.PROGRESS + 1),
-        slice(r.MISFIT, r.MISFIT + 1),
+        slice(r.RESIDUAL, r.RESIDUAL + 1),
     ]
     before = [b.block[rows].copy() for rows in kept]
     configurations(b, rng)
@@ -236,7 +236,7 @@ def test_arms_that_are_redundant_in_a_plane(n: int, slides: tuple[int, ...]) -> 
 
 @pytest.mark.parametrize("n", [2, 4, 5, 6, 7])
 def test_the_world_may_be_seen_from_anywhere(n: int) -> None:
-    """Rates and misfit do not depend on the frame, though few joints cannot give most twists."""
+    """Rates and residual do not depend on the frame, though few joints cannot give most twists."""
     chain, rng = chain_of(n, 0.3, False)
     X_VW = exp(rng.normal(size=6))
     moved = ScrewChain(
@@ -255,13 +255,13 @@ def test_the_world_may_be_seen_from_anywhere(n: int) -> None:
         b.run("arrive")
         b.block[[r.AIM, r.ACCEPTED, r.NEXT_STEP]] = [[1.0], [1.0], [0.1]]
         b.run("aim")
-        seen.append((b.block[b.rows.slope(0) : b.rows.slope(1)].copy(), b.block[r.MISFIT].copy()))
+        seen.append((b.block[b.rows.slope(0) : b.rows.slope(1)].copy(), b.block[r.RESIDUAL].copy()))
     clear = least_singular_value(chain, q) > 0.02
-    (rates, misfit), (rates_moved, misfit_moved) = seen
+    (rates, residual), (rates_moved, residual_moved) = seen
     np.testing.assert_allclose(rates_moved[:, clear], rates[:, clear], rtol=1e-6, atol=1e-6)
-    np.testing.assert_allclose(misfit_moved[clear], misfit[clear], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(residual_moved[clear], residual[clear], rtol=1e-6, atol=1e-9)
     if n < 6:
-        assert (misfit[clear] > 1e-4).all()
+        assert (residual[clear] > 1e-4).all()
 
 
 def judged(**rows: float) -> np.ndarray:
@@ -300,8 +300,8 @@ def test_judge_sees_what_matters() -> None:
     assert judged(PROGRESS=0.9)[r.EVENT] == 1.0
     assert judged(q=2.95, q_stage=3.05)[r.EVENT] == 1.0
     assert judged(q=-2.95, q_stage=-3.05)[r.ROOM] <= 0.0
-    assert judged(MISFIT=1.01 * MISFIT_LIMIT**2)[r.EVENT] == 1.0
-    assert judged(MISFIT=0.99 * MISFIT_LIMIT**2)[r.EVENT] == 0.0
+    assert judged(RESIDUAL=1.01 * RESIDUAL_LIMIT**2)[r.EVENT] == 1.0
+    assert judged(RESIDUAL=0.99 * RESIDUAL_LIMIT**2)[r.EVENT] == 0.0
     fast = 1.01 * RATE_LIMIT
     assert judged(slope_0=fast)[r.EVENT] == 1.0
     assert judged(STEP=1e-7, slope_6=fast)[r.EVENT] == 1.0

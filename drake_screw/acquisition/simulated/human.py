@@ -11,8 +11,8 @@ from scipy.signal import butter, sosfiltfilt
 
 from drake_screw.acquisition.simulated.leading import joint_motion
 from drake_screw.robot import ScrewChain
-from drake_screw.screws import rotation_angle, translation_distance
-from drake_screw.screws.rotations import Array
+from drake_screw.screws import rotation_angle, shift, translation_distance
+from drake_screw.typing import Array
 
 RATE = 100.0  # Hz
 SHORTEST, LONGEST = 8.6, 20.0  # s
@@ -114,6 +114,5 @@ def swayed(chain: ScrewChain, q: Array, rng: np.random.Generator) -> Array:
         noise /= noise.std(axis=0)
         V_WE += noise * np.repeat([sway.rotation, sway.position], 3)
     V_WE *= minimum_jerk(np.clip(np.arange(len(q)) / RATE, 0.0, 1.0))[:, None]
-    V = V_WE.copy()
-    V[:, 3:] += np.cross(chain.pose(q)[:, :3, 3], V_WE[:, :3])
+    V = shift(V_WE, -chain.pose(q)[:, :3, 3])
     return q + joint_motion(chain.jacobian(q), V)

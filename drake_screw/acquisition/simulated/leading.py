@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import inverse, log, rotation_angle, sclerp, translation_distance
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 STEP = 0.06  # rad, hand motion in one step
-LENGTH = 0.5  # m, hand motion that takes as many steps as a radian
+CHARACTERISTIC_LENGTH = 0.5  # m, hand motion that takes as many steps as a radian
 DAMPING = 0.01
 FASTEST = 0.25  # rad, joint motion in one step beyond which nobody could lead the arm
 ARRIVED = (2e-3, 1e-2)  # m, rad
@@ -56,7 +56,7 @@ def lead(chain: ScrewChain, q_start: Array, X_WK: Array) -> Led:
     points, segments, arrived = [q], [0], np.ones(count, dtype=bool)
     for segment in range(X_WK.shape[1]):
         X_WA, X_WB = X_WE, X_WK[:, segment]
-        size = rotation_angle(X_WA, X_WB) + translation_distance(X_WA, X_WB) / LENGTH
+        size = rotation_angle(X_WA, X_WB) + translation_distance(X_WA, X_WB) / CHARACTERISTIC_LENGTH
         steps = max(4, int(np.ceil(size.max() / STEP)))
         for i in range(1, steps + 1):
             target = sclerp(X_WA, X_WB, np.full(count, i / steps))

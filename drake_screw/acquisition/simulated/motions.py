@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drake_screw.screws import pose
-from drake_screw.screws.rotations import Array
+from drake_screw.typing import Array
 
 DEGREE = np.pi / 180.0
 

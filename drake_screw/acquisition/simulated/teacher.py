@@ -24,8 +24,8 @@ from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import ScenarioError, unknown
 from drake_screw.robot import Workcell
-from drake_screw.screws.rotations import Array
 from drake_screw.tasks import WorkArea
+from drake_screw.typing import Array
 
 CANDIDATES = 64  # ways thought of at a time
 ATTEMPTS = 3

@@ -171,7 +171,7 @@ def joint_rates(
     return [e.dot(column, force) for column in columns]
 
 
-def misfit(e: Emitter, columns: list[list[Value]], rates: Vector, twist: Vector) -> Value:
+def residual(e: Emitter, columns: list[list[Value]], rates: Vector, twist: Vector) -> Value:
     """|twist - J rates|^2."""
     rest = [
         e.sum(

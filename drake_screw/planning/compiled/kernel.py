@@ -55,7 +55,7 @@ class Kernel:
         self._bounds = Bounds(
             np.array([lower, upper], dtype=float),
             settings.rate_max**2,
-            settings.misfit_max**2,
+            settings.residual_max**2,
             settings.step_min,
         )
 

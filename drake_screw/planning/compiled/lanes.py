@@ -18,7 +18,6 @@ from drake_screw.planning.compiled.rows import (
     EVENT,
     HAND,
     LANES,
-    MISFIT,
     NEXT_STEP,
     OFF_PLACE,
     OFF_TURN,
@@ -26,6 +25,7 @@ from drake_screw.planning.compiled.rows import (
     PROGRESS,
     RATE_END,
     RATE_START,
+    RESIDUAL,
     ROOM,
     STEP,
     TARGET,
@@ -49,13 +49,13 @@ class Bounds(NamedTuple):
 
     Attributes:
         limits: (2, n) lower and upper joint limits.
-        rate2, misfit2: squares of the bounds on |dq/ds| and on the misfit, per hand motion.
+        rate2, residual2: squares of the bounds on |dq/ds| and on the residual, per hand motion.
         step: of s, at least.
     """
 
     limits: Array
     rate2: float
-    misfit2: float
+    residual2: float
     step: float
 
 
@@ -246,8 +246,8 @@ def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     bound = problem.bounds.rate2 * hand2
     if lanes[i, CORRECTION] > 0:
         progress, step = 1.0, 0.0
-    misfits = b[at(MISFIT, i)] > problem.bounds.misfit2 * hand2
-    if b[at(ACCEPTED, i)] == 0.0 or start2 > bound or misfits:
+    residuals = b[at(RESIDUAL, i)] > problem.bounds.residual2 * hand2
+    if b[at(ACCEPTED, i)] == 0.0 or start2 > bound or residuals:
         return UNREACHABLE, -1, progress
     racing = (1.0 - start2 / bound) / (1.0 - start2 / end2) if end2 > bound else 2.0
     if b[at(ROOM, i)] <= 0.0:

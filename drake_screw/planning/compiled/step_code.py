@@ -15,12 +15,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from drake_screw.planning.compiled import rows as r
-from drake_screw.planning.compiled.arm_code import ArmCode, Pose, joint_rates, misfit, orientation
+from drake_screw.planning.compiled.arm_code import ArmCode, Pose, joint_rates, orientation, residual
 from drake_screw.planning.compiled.emitter import Emitter, Value, Vector, text
 from drake_screw.planning.compiled.functions import log_between
 from drake_screw.planning.compiled.link_frames import LinkFrames
 from drake_screw.planning.compiled.matrices import Factor
-from drake_screw.planning.contract import LENGTH, MISFIT_LIMIT, ORIENTATION_MIN, RATE_LIMIT
+from drake_screw.planning.contract import (
+    CHARACTERISTIC_LENGTH,
+    ORIENTATION_MIN,
+    RATE_LIMIT,
+    RESIDUAL_LIMIT,
+)
 
 TABLEAU = (
     (1 / 5,),
@@ -45,8 +50,8 @@ class Settings:
         approach: part of the way to the next singularity that a step may take. At the end of the
             arm's reach, at s*, |dq/ds|^2 grows as 1 / (s* - s), so that two values of it tell s*.
         step_min: of s; where smaller steps are needed the hand cannot follow.
-        rate_max: bound on |dq/ds| per hand motion sqrt(turn^2 + (travel / LENGTH)^2), rad.
-        misfit_max: bound on the part of the hand motion that the joints cannot give.
+        rate_max: bound on |dq/ds| per hand motion (see `contract.hand_motion`), rad.
+        residual_max: bound on the part of the hand motion that the joints cannot give.
     """
 
     tolerance: float = 1e-4
@@ -55,7 +60,7 @@ class Settings:
     approach: float = 0.6
     step_min: float = 1e-6
     rate_max: float = RATE_LIMIT
-    misfit_max: float = MISFIT_LIMIT
+    residual_max: float = RESIDUAL_LIMIT
 
 
 def blend(n: int, stage: int) -> str:
@@ -173,7 +178,7 @@ def _aim(arm: ArmCode, factor: Factor, settings: Settings) -> None:
     twist = [update(r.TWIST + k, new) for k, new in enumerate(new_twist)]
     p_WE = [e.load(r.POSE + k) for k in (3, 7, 11)]
     travel = [
-        e.sum((1.0 / LENGTH, v), (1.0 / LENGTH, k))
+        e.sum((1.0 / CHARACTERISTIC_LENGTH, v), (1.0 / CHARACTERISTIC_LENGTH, k))
         for v, k in zip(twist[3:], e.cross(twist[:3], p_WE), strict=True)
     ]
     hand = [*twist[:3], *travel]
@@ -181,8 +186,8 @@ def _aim(arm: ArmCode, factor: Factor, settings: Settings) -> None:
 
     in_middle = arm.to_middle(new_twist)
     rates = joint_rates(e, arm.columns, factor, in_middle)
-    missing = misfit(e, arm.columns, rates, in_middle)
-    update(r.MISFIT, e.sum((missing, left, left)))
+    missing = residual(e, arm.columns, rates, in_middle)
+    update(r.RESIDUAL, e.sum((missing, left, left)))
     fastest: Value = 0.0
     for j, rate in enumerate(rates):
         slope = update(rows.slope(0) + j, rate)
@@ -242,8 +247,8 @@ def judge(lower: Vector, upper: Vector, settings: Settings) -> str:
     finished = f"({e.load(r.PROGRESS)} + {step} > {1.0 - 1e-9!r})"
     good_event = f"({finished} | ({room} <= 0.0) | ({rate_end} > {bound}))"
     slow = f"({next_step} < {settings.step_min!r})"
-    misfit_bound = e.let(f"{settings.misfit_max**2!r} * {e.load(r.HAND)}")
-    stuck = f"({rate_start} > {bound}) | ({e.load(r.MISFIT)} > {misfit_bound})"
+    residual_bound = e.let(f"{settings.residual_max**2!r} * {e.load(r.HAND)}")
+    stuck = f"({rate_start} > {bound}) | ({e.load(r.RESIDUAL)} > {residual_bound})"
     event = e.let(f"({good} & {good_event}) | {slow} | {stuck}")
     e.store(r.ACCEPTED, e.where(str(good), 1.0, 0.0))
     e.store(r.EVENT, e.where(event, 1.0, 0.0))
