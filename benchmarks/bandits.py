@@ -40,7 +40,7 @@ from drake_screw.bandits.mixture import confidence_interval
 from drake_screw.bandits.spending import attempt_delta
 from drake_screw.bandits.tally import FIRST, STEP
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.study_runs import Experiment, split
+from drake_screw.studies.experiment import Experiment, split
 from drake_screw.tasks import draw
 
 K = 16

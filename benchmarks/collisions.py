@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from drake_screw.scenario.execute import collision_free_planner, known_demonstrations
-from drake_screw.scenario.runner import open_run
+from drake_screw.runs.executions import collision_free_planner, known_demonstrations
+from drake_screw.runs.run import open_run
 from drake_screw.tasks import draw
 from drake_screw.visualization.palette import failure_color, ink_on
 

@@ -21,6 +21,7 @@ from pydrake.common.value import Value
 from pydrake.systems.analysis import Simulator
 
 from drake_screw.acquisition import Suggestion
+from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.execution import (
     ScrewPlanExecutor,
@@ -34,7 +35,6 @@ from drake_screw.planning import ReferencePlanner
 from drake_screw.planning.collisions import PlanChecker
 from drake_screw.planning.paths import joint_paths
 from drake_screw.robot import Arm
-from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.loader import load_scenario
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.acquisition import Suggestion
+from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.swap_model import swap_model
 from drake_screw.demonstrations import Demonstration, Recording, read_library
 from drake_screw.robot import Arm
-from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.swap import swap_model
 from drake_screw.tasks import GridRegions
 from drake_screw.typing import Array
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from drake_screw.bandits.naive_pac import most_failures, sample_size
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.study_runs import Experiment, split
+from drake_screw.studies.experiment import Experiment, split
 from drake_screw.tasks import draw
 
 K = 16

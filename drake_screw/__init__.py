@@ -13,10 +13,10 @@ from drake_screw.errors import DrakeScrewError
 __all__ = ["DrakeScrewError", "Setup", "load_scenario", "new_run", "open_run"]
 
 _PLACES = {
-    "Setup": "drake_screw.scenario.assemble",
+    "Setup": "drake_screw.assembly.setup",
     "load_scenario": "drake_screw.scenario.loader",
-    "new_run": "drake_screw.scenario.runner",
-    "open_run": "drake_screw.scenario.runner",
+    "new_run": "drake_screw.runs.run",
+    "open_run": "drake_screw.runs.run",
 }
 
 

@@ -72,7 +72,7 @@ def _load(scenario: str, changes: list[str] | None, model: Path | None) -> Scena
     loaded = load_scenario(scenario, changes or [])
     if model is None:
         return loaded
-    from drake_screw.scenario.swap import swap_model
+    from drake_screw.assembly.swap_model import swap_model
 
     return swap_model(loaded, model)
 
@@ -134,11 +134,16 @@ def run(
     """
     if quiet:
         logging.getLogger("drake_screw").setLevel(logging.WARNING)
-    from drake_screw.scenario.console import show
-    from drake_screw.scenario.pages import check_pages, open_pages
-    from drake_screw.scenario.runner import new_run, open_run, resumable
+    from drake_screw.acquisition import Finished
+    from drake_screw.commands.console import RunConsole, show_certificate
+    from drake_screw.runs.run import new_run, open_run, resumable
+    from drake_screw.web.pages import Pages
 
     console = Console()
+
+    def announce(text: str) -> None:
+        console.print(text, soft_wrap=True, markup=False)
+
     if resume is not None:
         given = [scenario, demonstrations, model, seed, output, set_]
         if any(value is not None for value in given):
@@ -146,25 +151,28 @@ def run(
                 "--resume goes alone: a run is carried on as it was begun",
                 remedy="Give just: drake-screw run --resume RUN",
             )
-        job = resumable(open_run(resume))
-        check_pages(job.setup.scenario, meshcat, host, port)
+        loaded = resumable(open_run(resume)).setup.scenario
     else:
         loaded = _load(_given(scenario), _changes(set_, seed, demonstrations), model)
-        check_pages(loaded, meshcat, host, port)
-        job = new_run(loaded, output)
-    pages = open_pages(job.setup, console, meshcat=meshcat, host=host, port=port)
-    try:
-        finished = show(job, console, quiet=quiet, view=pages.view)
-    except KeyboardInterrupt:
-        command = f"drake-screw run --resume {job.directory.path}"
-        console.print(f"interrupted; carry on with: {command}", soft_wrap=True)
-        raise typer.Exit(130) from None
-    else:
-        if pages.view is not None and console.is_terminal:
+    with Pages(loaded, watched=meshcat, host=host, port=port, announce=announce) as pages:
+        job = (
+            new_run(loaded, output, **pages.parts)
+            if resume is None
+            else open_run(resume, **pages.parts)
+        )
+        pages.open(job.setup)
+        try:
+            with RunConsole(console, job.setup.regions, quiet=quiet) as shown:
+                *_, finished = job.events([*pages.listeners, shown])
+        except KeyboardInterrupt:
+            command = f"drake-screw run --resume {job.directory.path}"
+            console.print(f"interrupted; carry on with: {command}", soft_wrap=True)
+            raise typer.Exit(130) from None
+        assert isinstance(finished, Finished)
+        show_certificate(job, finished, console)
+        if pages.live is not None and console.is_terminal:
             with suppress(EOFError, KeyboardInterrupt):
                 console.input("the page stays until you press Enter ")
-    finally:
-        pages.close()
     raise typer.Exit(0 if finished.status == "certified" else 1)
 
 
@@ -189,7 +197,7 @@ def evaluate(
     The output has a column for each demonstration; its cells are 0:0 for success, s:j failed in
     screw segment s at the limit of joint j (both counted from 1), s:n unreachable, s:c collision.
     """
-    from drake_screw.scenario.evaluate import evaluate as carry_out
+    from drake_screw.commands.evaluate import evaluate as carry_out
 
     loaded = _load(scenario, set_, model)
     Console().print(carry_out(loaded, demonstrations, instances, output), highlight=False)
@@ -198,7 +206,7 @@ def evaluate(
 @app.command(epilog="Example:  drake-screw check my_scenario.yaml")
 def check(scenario: ScenarioArgument, model: ModelOption = None, set_: SetOption = None) -> None:
     """Check a scenario and its files; tell what would run."""
-    from drake_screw.scenario.check import check as carry_out
+    from drake_screw.commands.check import check as carry_out
 
     Console().print(carry_out(_load(scenario, set_, model)), highlight=False)
 
@@ -208,13 +216,17 @@ def report(
     run: RunArgument,
 ) -> None:
     """Tell a finished run again, and draw its pictures anew."""
-    from drake_screw.scenario.console import tell
-    from drake_screw.scenario.inspection import Inspection
-    from drake_screw.scenario.report_page import write_report
-    from drake_screw.scenario.runner import open_run, redraw
+    from drake_screw.acquisition import Finished
+    from drake_screw.commands.console import show_certificate, show_event
+    from drake_screw.runs.inspection import Inspection
+    from drake_screw.runs.run import open_run, redraw
+    from drake_screw.web.report_page import write_report
 
     job, console = open_run(run), Console()
-    tell(job, list(job.replay()), console)
+    for event in list(job.replay()):
+        show_event(event, job.setup.regions, console)
+        if isinstance(event, Finished):
+            show_certificate(job, event, console)
     redraw(job)
     console.print(f"written: {write_report(Inspection(job))}", soft_wrap=True)
 
@@ -248,8 +260,8 @@ def study(
 
     For several numbers of regions; every run has fresh samples and a random first demonstration.
     """
-    from drake_screw.scenario.study import new_study, numbers_of_regions, open_study
-    from drake_screw.scenario.study_console import show_study
+    from drake_screw.commands.study import show_study
+    from drake_screw.studies.study import new_study, numbers_of_regions, open_study
 
     console = Console()
     if resume is not None:
@@ -290,7 +302,7 @@ def inspect(
     In the terminal, and in Meshcat or on a page that can be kept. It begins with the last round
     that asked for a demonstration, at the instance where it did.
     """
-    from drake_screw.scenario.inspect import inspect as carry_out
+    from drake_screw.web.inspector_page import inspect as carry_out
 
     carry_out(run, Console(), round=round, instance=instance, html=html, host=host, port=port)
 
@@ -312,8 +324,8 @@ def execute(
     With the arm's dynamics and controllers. Reports joint limits, velocities, tracking, deviation
     from the screws and contacts; writes a table and a recording that plays in the browser.
     """
-    from drake_screw.scenario.execute import execute as carry_out
-    from drake_screw.scenario.execute import station_graphviz
+    from drake_screw.runs.executions import execute as carry_out
+    from drake_screw.runs.executions import station_graphviz
 
     if graphviz:
         print(station_graphviz(run))
@@ -335,7 +347,7 @@ def export(
     format: Annotated[str, typer.Option(help="baxter-csv, ros-trajectory or npz.")] = "baxter-csv",
 ) -> None:
     """Write a plan as a trajectory that the robot can play."""
-    from drake_screw.scenario.export import export as carry_out
+    from drake_screw.commands.export import export as carry_out
 
     Console().print(carry_out(run, instance, format, output), highlight=False)
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from drake_screw.runs.run import new_run
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.runner import new_run
 
 CHANGES = ["demonstrations.budget=2", "coverage.strategy=eprocess", "seed=0"]
 

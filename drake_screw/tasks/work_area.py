@@ -76,6 +76,35 @@ class WorkArea:
         yaw = yaw - 2.0 * np.pi * np.round((yaw - middle) / (2.0 * np.pi))
         return np.stack([X_WO[..., 0, 3], X_WO[..., 1, 3], yaw], axis=-1)
 
+    def complete(self, instances: ArrayLike) -> Array:
+        """Task instances with all their coordinates.
+
+        Args:
+            instances: (N, k, 3) x, y in m and yaw in rad, or (N, k, 2) without yaw, which is then
+                the least of the area; the axis k may be left out for a single object.
+
+        Returns:
+            (N, k, 3).
+
+        Raises:
+            ValueError: another shape, or a number that is not finite.
+
+        >>> area = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=-0.1),))
+        >>> area.complete([[0.9, 0.3], [1.0, 0.4]]).tolist()
+        [[[0.9, 0.3, 0.0]], [[1.0, 0.4, 0.0]]]
+        """
+        given = np.asarray(instances, dtype=float)
+        k = len(self.objects)
+        if k == 1 and given.ndim == 2:
+            given = given[:, None]
+        if given.ndim != 3 or given.shape[1] != k or given.shape[2] not in (2, 3):
+            raise ValueError(f"instances have shape {np.shape(instances)}, expected (N, {k}, 3)")
+        if not np.isfinite(given).all():
+            raise ValueError("instances must be finite numbers")
+        x_y_yaw = np.tile(self.lower, (len(given), 1, 1))
+        x_y_yaw[..., : given.shape[2]] = given
+        return x_y_yaw
+
     def contains(self, x_y_yaw: ArrayLike, *, tolerance: float = 1e-9) -> Array:
         """Whether each instance lies in the area; (..., k, 3) to (...) bool."""
         x_y_yaw = np.asarray(x_y_yaw, dtype=float)

@@ -19,10 +19,9 @@ from drake_screw.screws import sclerp_position
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes, screw_shapes
 from drake_screw.visualization.attempt import AHEAD, FAILED, Attempt, unit
-from drake_screw.visualization.charts import STATUS_COLORS
 from drake_screw.visualization.drawing import draw, draw_frames
 from drake_screw.visualization.linkage import Linkage
-from drake_screw.visualization.palette import INK, PAPER
+from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
 
 BOWL = "#f4c95d"
 AXIS = "#5b3fa8"

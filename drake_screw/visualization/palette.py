@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from drake_screw.planning import Cause
 from drake_screw.typing import Array
+from drake_screw.visualization.attempt import AHEAD, DONE, FAILED
 
 OUTCOME_COLORS = MappingProxyType(
     {
@@ -34,6 +35,14 @@ OUTCOME_NAMES = MappingProxyType(
         Cause.NOT_TRIED: "not tried",
     }
 )
+STATUS_COLORS = MappingProxyType(
+    {
+        DONE: OUTCOME_COLORS[Cause.SUCCESS],
+        FAILED: OUTCOME_COLORS[Cause.JOINT_LIMIT],
+        AHEAD: OUTCOME_COLORS[Cause.NOT_TRIED],
+    }
+)
+"""Of screw segments; the ghost and the joint at its limit have that of what failed."""
 ACCENT = "#ffd60a"
 """The suggested instance."""
 INK = "#1c1b22"

@@ -8,22 +8,21 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from drake_screw.scenario.choice import choose
-from drake_screw.scenario.inspect import save_page
-from drake_screw.scenario.inspection import open_inspection
-from drake_screw.scenario.report_page import write_report
+from drake_screw.runs.inspection import open_inspection
 from drake_screw.screws import sclerp_position
 from drake_screw.visualization.attempt import DONE, FAILED
-from drake_screw.visualization.charts import STATUS_COLORS
-
-from .conftest import Browser, program
+from drake_screw.web.charts import STATUS_COLORS
+from drake_screw.web.choice import choose
+from drake_screw.web.inspector_page import save_page
+from drake_screw.web.report_page import write_report
+from tests.browser.conftest import Browser, program
 
 HAND = "workcell/baxter/left_hand"
 SERVE = """
 import sys
 from pathlib import Path
 from rich.console import Console
-from drake_screw.scenario.inspect import inspect
+from drake_screw.web.inspector_page import inspect
 inspect(Path(sys.argv[1]), Console(width=200), round=1)
 """
 

@@ -6,21 +6,20 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import Finished, RegionsEvaluated, RoundFinished
-from drake_screw.scenario.live import LiveView
-from drake_screw.scenario.runner import open_run
-
-from .conftest import program
+from drake_screw.runs.run import open_run
+from drake_screw.web.live_page import LivePage
+from tests.browser.conftest import program
 
 TEACH = """
 import sys
 import numpy as np
 from drake_screw.acquisition import Suggestion
 from drake_screw.acquisition.interactive import InteractiveTeacher
-from drake_screw.scenario.assemble import Setup
+from drake_screw.assembly.setup import Setup
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.teaching import TeachingDesk
+from drake_screw.web.teaching_page import TeachingPage
 setup = Setup(load_scenario("pouring"))
-teacher = InteractiveTeacher(TeachingDesk(setup))
+teacher = InteractiveTeacher(TeachingPage(setup))
 place = Suggestion(6, np.array([[0.85, 0.45, 0.0]]), 2)
 lesson = teacher.demonstrate(place, number=0, used=(), rng=np.random.default_rng(0))
 demonstration = setup.learn(lesson.recording)
@@ -34,12 +33,12 @@ def run(finished_run):
 
 
 def test_a_run_is_told_as_it_happens(browser, run) -> None:
-    view = LiveView(run.setup)
+    view = LivePage(run.setup)
     try:
         browser.open(view.url)
         browser.until(lambda: "starting" in browser.text("#headline"))
         for event in run.replay():
-            view.hear(event)
+            view(event)
             if isinstance(event, RoundFinished):
                 number = event.round + 1
                 browser.until(lambda n=number: f"round {n}: not" in browser.text("#headline"))
@@ -62,13 +61,13 @@ def test_a_run_is_told_as_it_happens(browser, run) -> None:
 
 
 def test_regions_fill_while_a_round_goes_on(browser, run) -> None:
-    view = LiveView(run.setup)
+    view = LivePage(run.setup)
     try:
         browser.open(view.url)
         K = run.setup.regions.K
         samples = np.full(K, 50)
         failures = np.where(np.arange(K) == 5, 40, 0)
-        view.progress(RegionsEvaluated(0, samples, failures))
+        view(RegionsEvaluated(0, samples, failures))
         browser.until(lambda: "80.00% in region 5" in browser.text("#details"))
         browser.until(lambda: browser.node("progress/regions"))
         lower, upper = run.setup.regions.bounds(np.array([5, 6]))

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from drake_screw.commands.evaluate import evaluate
+from drake_screw.commands.export import export
 from drake_screw.execution.trials import trials_csv
 from drake_screw.planning import Cause
-from drake_screw.scenario.evaluate import evaluate
-from drake_screw.scenario.export import export
+from drake_screw.runs.run import Run, new_run
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.runner import Run, new_run
-from drake_screw.scenario.study import RUNS, STUDY, SUMMARY, new_study
+from drake_screw.studies.study import RUNS, STUDY, SUMMARY, new_study
 
 PAGE = (Path(__file__).parents[2] / "docs" / "file_formats.md").read_text()
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from drake_screw.assembly.setup import Setup
 from drake_screw.planning import BatchPlanner, Cause
 from drake_screw.planning.compiled import Kernel, kernel
 from drake_screw.planning.compiled.lanes import Answers
 from drake_screw.planning.contract import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from drake_screw.robot import Workcell
-from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.screws import exp, rotation_angle, translation_distance
 

@@ -9,8 +9,8 @@ from typing import get_args, get_type_hints
 
 import pytest
 
+from drake_screw.assembly.setup import Setup
 from drake_screw.errors import ScenarioError
-from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.scenario.reference_page import COMMAND, MINIMAL, reference_page
 from drake_screw.scenario.schema import Interval, Scenario

@@ -16,7 +16,6 @@ from drake_screw.robot import ObjectConfig, Workcell, build_workcell
 from drake_screw.screws import exp, pose
 from drake_screw.screws.poses import inverse
 from drake_screw.tasks import WorkArea
-from drake_screw.visualization.arm_sketch import arm_sketch
 from drake_screw.visualization.attempt import (
     AHEAD,
     DONE,
@@ -27,14 +26,14 @@ from drake_screw.visualization.attempt import (
     describe_segment,
     headline,
 )
-from drake_screw.visualization.attempt_tables import attempts_csv, attempts_json
-from drake_screw.visualization.charts import joint_chart, joint_strip, work_area_map
 from drake_screw.visualization.inspector import Inspector
-from drake_screw.visualization.inspector_panel import drawn_state
 from drake_screw.visualization.linkage import Linkage
-
-from .conftest import BOWL
-from .test_scene import BAXTER, TABLE
+from drake_screw.web.arm_sketch import arm_sketch
+from drake_screw.web.attempt_tables import attempts_csv, attempts_json
+from drake_screw.web.charts import joint_chart, joint_strip, work_area_map
+from drake_screw.web.panel import drawn_state
+from tests.visualization.conftest import BOWL
+from tests.visualization.test_scene import BAXTER, TABLE
 
 OBJECTS = (ObjectConfig("bowl", 0.08, 0.06),)
 

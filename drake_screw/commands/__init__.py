@@ -1,0 +1,1 @@
+"""What the ``drake-screw`` command does, a module for each verb."""

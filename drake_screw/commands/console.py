@@ -1,0 +1,146 @@
+"""A run as seen in a terminal: live progress, a table for each round, the certificate."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.panel import Panel
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from drake_screw.acquisition import (
+    DemonstrationRequested,
+    Event,
+    Finished,
+    RegionsEvaluated,
+    RoundFinished,
+    RoundStarted,
+    Status,
+)
+from drake_screw.bandits import Verdict
+from drake_screw.runs.certificate import certificate, statement
+from drake_screw.runs.narration import describe
+from drake_screw.runs.run import Run
+from drake_screw.tasks import Regions
+
+_ROWS = 24
+
+
+class RunConsole:
+    """A listener that shows a run in a terminal: a progress bar, and a table for each round.
+
+    To be used as a context manager, in which the bar is alive.
+
+    Args:
+        console: to write to; a live display only where it is a terminal.
+        regions: of the run, where they do not refine themselves.
+        quiet: show nothing.
+    """
+
+    def __init__(self, console: Console, regions: Regions, *, quiet: bool = False) -> None:
+        self._regions, self._quiet = regions, quiet
+        self._live = _progress(console, hidden=quiet)
+        self._task = self._live.add_task("starting", total=None, detail="")
+
+    def __enter__(self) -> RunConsole:
+        self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._live.update(self._task, visible=False)
+        self._live.stop()
+
+    def __call__(self, event: Event) -> None:
+        """Show an event."""
+        match event:
+            case RegionsEvaluated():
+                self._live.update(self._task, detail=_detail(event))
+            case RoundStarted():
+                words = describe(event, self._regions)
+                self._live.update(self._task, description=words, detail="")
+            case DemonstrationRequested():
+                words = f"waiting for demonstration {event.number + 1}"
+                self._live.update(self._task, description=words, detail="")
+        if not self._quiet:
+            show_event(event, self._regions, self._live.console)
+
+
+def show_event(event: Event, regions: Regions, console: Console) -> None:
+    """An event in words, and for a round its table; nothing where there is nothing to keep."""
+    if isinstance(event, RegionsEvaluated | RoundStarted | Finished):
+        return
+    console.print(Text(describe(event, regions)))
+    if isinstance(event, RoundFinished):
+        console.print(round_table(event.verdict, event.regions))
+
+
+def show_certificate(run: Run, finished: Finished, console: Console) -> None:
+    """The statement a finished run makes, and where to find the rest."""
+    stated = certificate(run.setup, finished, run.directory.record["rounds"])
+    certified = finished.status is Status.CERTIFIED
+    console.print(
+        Panel(
+            Text("\n".join(statement(stated, finished.reason))),
+            title="certificate" if certified else "no certificate",
+            border_style="green" if certified else "yellow",
+            title_align="left",
+        )
+    )
+    console.print(Text(f"run directory: {run.directory.path}"), soft_wrap=True)
+
+
+def round_table(verdict: Verdict, regions: Regions) -> Table:
+    """Regions of a round with their counts; with many regions, the worst of them."""
+    shown = np.arange(regions.K)
+    title = None
+    if regions.K > _ROWS:
+        shown = np.argsort(-np.nan_to_num(verdict.estimates), kind="stable")[:_ROWS]
+        title = f"the {_ROWS} regions that fail most, of {regions.K}"
+    table = Table(title=title, box=None, pad_edge=False, padding=(0, 1, 0, 0))
+    table.add_column("region", justify="right", no_wrap=True)
+    table.add_column("where", overflow="fold", min_width=24)
+    for name in ("samples", "failures", "rate", "at most"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    for j in shown.tolist():
+        weakest = j == verdict.region
+        table.add_row(
+            str(j),
+            regions.name(j),
+            f"{verdict.samples[j]:,}",
+            f"{verdict.failures[j]:,}",
+            f"{verdict.estimates[j]:.4f}",
+            f"{verdict.upper[j]:.4f}",
+            _bar(verdict.estimates, j) + (" <" if weakest else ""),
+            style="bold" if weakest else None,
+        )
+    return table
+
+
+def _detail(event: RegionsEvaluated) -> str:
+    rates = event.failures / np.maximum(event.samples, 1)
+    drawn = f"{event.samples.sum():>9,} instances, "
+    if len(rates) == 1:
+        return f"{drawn}{event.failures[0]:,} failures"
+    worst = int(np.argmax(rates))
+    return f"{drawn}highest failure rate {rates[worst]:6.2%} in region {worst}"
+
+
+def _bar(estimates: NDArray[np.float64], region: int) -> str:
+    share = float(np.nan_to_num(estimates[region]))
+    return "█" * int(np.ceil(8 * share)) if share > 0 else ""
+
+
+def _progress(console: Console, *, hidden: bool) -> Progress:
+    return Progress(
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=12),
+        TextColumn("{task.fields[detail]}"),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+        disable=hidden or not console.is_terminal,
+    )

@@ -1,0 +1,273 @@
+"""Execute plans of a run in simulation: fresh instances, or one place of the user's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+
+from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
+from drake_screw.execution import build_station, recording_html
+from drake_screw.execution.batch import Job, StationConfig, execute_all
+from drake_screw.execution.trials import Trial, summary, trials_csv
+from drake_screw.planning import Cause, Outcomes, concatenate
+from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.assembly.setup import Setup
+from drake_screw.runs.directory import write_folder
+from drake_screw.runs.run import Run, open_run
+from drake_screw.tasks import draw
+from drake_screw.typing import Array
+from drake_screw.visualization.lifetime import scratch
+
+ROUND = 1_000_000
+"""The round whose instances are executed. No run gets that far, so they are fresh."""
+
+TRIES = 20  # times as many instances are drawn in a region at most as are wanted
+SHOWN = 4  # executions in the recording
+
+
+def execute(
+    run: Path,
+    *,
+    per_region: int = 2,
+    instance: Sequence[float] | None = None,
+    workers: int | None = None,
+) -> str:
+    """Plan, simulate and report executions of a run.
+
+    Every instance is planned with the run's demonstrations, the nearest first, until one gives a
+    plan that keeps the limits and touches nothing; that plan is simulated. A table, a summary and
+    a recording that plays go into a new folder ``executions/<time>`` of the run.
+
+    Args:
+        run: its directory.
+        per_region: executions in every region; instances without a plan are drawn again, and
+            reported.
+        instance: x, y and perhaps yaw of each object: execute this one instead.
+        workers: processes; as many as processors if None.
+
+    Returns:
+        A summary for people.
+
+    Raises:
+        DrakeScrewError: the run cannot be read or has no demonstrations, the instance is not one,
+            the model lacks inertia, or the folder cannot be written.
+    """
+    opened = open_run(run)
+    setup, demonstrations = opened.setup, known_demonstrations(opened)
+    _check_masses(setup)
+    planner = collision_free_planner(setup)
+
+    def plan(x_y_yaw: Array) -> Outcomes:
+        X_WO = setup.area.X_WO(x_y_yaw)
+        return planner.any_success(demonstrations, X_WO, setup.workcell.start)
+
+    if instance is None:
+        x_y_yaw, outcomes = _fresh_instances(setup, plan, per_region)
+    else:
+        x_y_yaw = placed(setup, instance)[None]
+        outcomes = plan(x_y_yaw)
+    X_WO = setup.area.X_WO(x_y_yaw)
+    by = np.argmax(outcomes.success, axis=1)
+    solved = np.flatnonzero(outcomes.any_success).tolist()
+    jobs = [Job(demonstrations[by[i]].transfer(X_WO[i]), X_WO[i]) for i in solved]
+    config = StationConfig(setup.robot, setup.table, setup.objects)
+    done = dict(zip(solved, execute_all(config, jobs, workers=workers), strict=True))
+    trials = []
+    for i, place in enumerate(x_y_yaw):
+        execution = done.get(i)
+        name = demonstrations[by[i]].name if i in done else ""
+        why = ""
+        if i not in done:
+            why = why_not(outcomes[i], demonstrations, X_WO[i], planner, setup)
+        elif execution is None:
+            why = "the reference planner finds none"
+        region = int(setup.regions.index(place))
+        trials.append(Trial(region, place, name, why, execution))
+    text = summary(trials)
+
+    def fill(folder: Path) -> None:
+        (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
+        (folder / "summary.txt").write_text(text + "\n")
+        shown = [
+            (trial.execution, setup.area.X_WO(trial.x_y_yaw))
+            for trial in _chosen(trials)
+            if trial.execution is not None
+        ]
+        if shown:
+            with scratch():
+                page = recording_html(shown, setup.robot, table=setup.table, objects=setup.objects)
+            (folder / "executions.html").write_text(page)
+
+    folder = _new_folder(opened.directory.path / "executions")
+    try:
+        write_folder(folder, fill)
+    except OSError as error:
+        raise RunDirectoryError(
+            f"cannot be written: {error.strerror}",
+            remedy="Executions are written beside the run; make its folder writable.",
+            file=folder,
+        ) from error
+    return f"{text}\nwritten to {folder}"
+
+
+def station_graphviz(run: Path) -> str:
+    """The simulated diagram of a run as GraphViz text.
+
+    Raises:
+        DrakeScrewError: the run cannot be read.
+    """
+    setup = open_run(run).setup
+    return build_station(setup.robot, table=setup.table, objects=setup.objects).graphviz
+
+
+def _check_masses(setup: Setup) -> None:
+    arm, plant = setup.workcell.arm, setup.workcell.plant
+    context = plant.CreateDefaultContext()
+    plant.SetPositions(context, arm.full_positions(setup.workcell.start))
+    M = plant.CalcMassMatrix(context)
+    for name in arm.joint_names:
+        place = plant.GetJointByName(name).velocity_start()
+        if M[place, place] <= 0.0:
+            raise ModelError(
+                f"joint '{name}' cannot be driven: what it moves has no inertia",
+                remedy="Give the links an <inertial> with mass and inertia; planning does without.",
+                file=setup.workcell.model_file,
+            )
+
+
+def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
+    """The demonstrations that a run has so far.
+
+    Raises:
+        RunDirectoryError: it has none.
+        RecordingError: one cannot be read.
+    """
+    entries = run.directory.record["demonstrations"]
+    if not entries:
+        raise RunDirectoryError(
+            "this run has no demonstrations yet",
+            remedy=f"Carry it on first: drake-screw run --resume {run.directory.path}",
+            file=run.directory.path,
+        )
+    return tuple(run.setup.learn(run.stored(number)[0]) for number in range(len(entries)))
+
+
+def placed(setup: Setup, numbers: Sequence[float]) -> Array:
+    """The task instance (k, 3) that a user means by x, y and perhaps yaw of each object.
+
+    A yaw left out is the least of the work area. Places outside the work area are allowed.
+
+    Raises:
+        ScenarioError: the wrong number of numbers.
+    """
+    area = setup.area
+    k, names = len(area.objects), ", ".join(o.name for o in area.objects)
+    if len(numbers) not in (2 * k, 3 * k) or not np.isfinite(numbers).all():
+        raise ScenarioError(
+            f"an instance of {len(numbers)} numbers: {' '.join(f'{v:g}' for v in numbers)}",
+            remedy=f"Give x and y in m, and perhaps yaw in rad, of each of: {names}.",
+        )
+    x_y_yaw = area.lower.copy()
+    given = np.asarray(numbers, dtype=float).reshape(k, -1)
+    x_y_yaw[:, : given.shape[1]] = given
+    return x_y_yaw
+
+
+def collision_free_planner(setup: Setup) -> CollisionFreePlanner:
+    """Plans what is to be executed, whether or not the scenario looks at collisions."""
+    return CollisionFreePlanner(setup.batch_planner, setup.workcell)
+
+
+def why_not(
+    outcomes: Outcomes,
+    demonstrations: Sequence[Demonstration],
+    X_WO: Array,
+    planner: CollisionFreePlanner,
+    setup: Setup,
+) -> str:
+    """Why no demonstration solves an instance, by the attempt that got farthest.
+
+    A plan that keeps the limits all the way but collides has got farther than any that does not.
+
+    Args:
+        outcomes: (D,).
+        demonstrations: D of them.
+        X_WO: (k, 4, 4).
+        planner: that gave the outcomes.
+        setup: of the scenario.
+    """
+    collides = outcomes.cause == Cause.COLLISION
+    best = int(np.lexsort((outcomes.fraction, outcomes.segment, collides))[-1])
+    cause, segment = Cause(int(outcomes.cause[best])), int(outcomes.segment[best]) + 1
+    name = demonstrations[best].name
+    match cause:
+        case Cause.JOINT_LIMIT:
+            joint = setup.workcell.arm.joint_names[int(outcomes.joint[best])]
+            return f"with {name}, {joint} meets its limit in segment {segment}"
+        case Cause.COLLISION:
+            hit = planner.checker.explain(demonstrations[best], X_WO, setup.workcell.start)
+            return f"with {name}, {hit}"
+        case _:
+            return f"with {name}, segment {segment} is out of reach"
+
+
+def _fresh_instances(
+    setup: Setup, plan: Callable[[Array], Outcomes], per_region: int
+) -> tuple[Array, Outcomes]:
+    """Instances (N, k, 3) drawn region by region until so many are solved, and all outcomes.
+
+    Those without a plan stay among them; a region gives up after TRIES times as many draws.
+    """
+    regions = setup.regions
+    drawn, missing = np.zeros(regions.K, dtype=int), np.full(regions.K, per_region)
+    places, outcomes = [], []
+    while missing.any():
+        x_y_yaw = np.concatenate(
+            [
+                draw(
+                    regions,
+                    j,
+                    seed=setup.scenario.seed,
+                    round=ROUND,
+                    start=int(drawn[j]),
+                    count=int(missing[j]),
+                )
+                for j in range(regions.K)
+            ]
+        )
+        region = np.repeat(np.arange(regions.K), missing)
+        planned = plan(x_y_yaw)
+        places.append(x_y_yaw)
+        outcomes.append(planned)
+        drawn += missing
+        missing -= np.bincount(region[planned.any_success], minlength=regions.K)
+        missing[drawn >= TRIES * per_region] = 0
+    x_y_yaw = np.concatenate(places)
+    order = np.argsort(regions.index(x_y_yaw), kind="stable")
+    return x_y_yaw[order], concatenate(outcomes)[order]
+
+
+def _chosen(trials: Sequence[Trial]) -> list[Trial]:
+    """What is worth looking at: what went wrong, the worst tracked, then some from all over."""
+    executed = [trial for trial in trials if trial.report is not None]
+
+    def badness(trial: Trial) -> tuple[bool, float]:
+        assert trial.report is not None
+        return not trial.report.flawless, trial.report.tracking.position
+
+    worst = sorted(executed, key=badness, reverse=True)[: SHOWN // 2]
+    rest = [trial for trial in executed if trial not in worst]
+    return worst + rest[:: max(1, -(-len(rest) // (SHOWN - len(worst))))]
+
+
+def _new_folder(parent: Path) -> Path:
+    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
+    folder, count = parent / stamp, 1
+    while folder.exists():
+        count += 1
+        folder = parent / f"{stamp}_{count}"
+    return folder

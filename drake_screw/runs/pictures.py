@@ -1,0 +1,46 @@
+"""The pictures a run leaves: heat maps, the course of the run, the scene in Meshcat."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from pydrake.geometry import Meshcat, MeshcatParams
+
+from drake_screw.acquisition import RoundFinished
+from drake_screw.assembly.setup import Setup
+from drake_screw.visualization import Scene, save_heat_map, save_run_figure
+
+
+def draw_round(setup: Setup) -> Callable[[RoundFinished, Path], None]:
+    """A function that draws a round as ``<stem>.png`` and ``<stem>.svg``."""
+
+    def draw(event: RoundFinished, stem: Path) -> None:
+        save_heat_map(event, event.regions, stem, scenario=setup.scenario.name)
+
+    return draw
+
+
+def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> None:
+    """Draw a whole run into a folder: rounds.png, rounds.svg and meshcat.html."""
+    if not rounds:
+        return
+    name, regions = setup.scenario.name, [event.regions for event in rounds]
+    save_run_figure(rounds, regions, folder / "rounds", scenario=name, beta=setup.goal.beta)
+    scene = make_scene(setup)
+    for event in rounds:
+        scene.show_round(event, event.regions)
+    scene.save_html(folder / "meshcat.html")
+
+
+def make_scene(setup: Setup) -> Scene:
+    """A Meshcat scene of a scenario, served on localhost only."""
+    meshcat = Meshcat(MeshcatParams(host="localhost"))
+    return Scene(
+        meshcat,
+        setup.robot,
+        setup.table,
+        setup.objects,
+        setup.area,
+        scenario=setup.scenario.name,
+    )

@@ -1,0 +1,154 @@
+"""The single runs of a study, and the grids they are made on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from drake_screw.acquisition import (
+    Evaluator,
+    Event,
+    Finished,
+    RecordedTeacher,
+    RoundFinished,
+    Teacher,
+    acquire,
+)
+from drake_screw.demonstrations import Demonstration, Recording
+from drake_screw.errors import ScenarioError
+from drake_screw.assembly.setup import Setup
+from drake_screw.scenario.schema import Scenario
+from drake_screw.tasks import AXES, GridRegions, WorkArea, grid_regions
+
+
+def split(area: WorkArea, K: int) -> GridRegions:
+    """A grid of K equal regions, as square as it goes: 1 x 1, 1 x 2, 2 x 2, 2 x 4, 4 x 4, ...
+
+    The prime factors of K, the largest first, go in turn to the axes that have room: those in
+    metres before the yaws, the longest first.
+
+    Raises:
+        ScenarioError: K is not positive, or no axis has room to be split.
+    """
+    room = area.upper - area.lower
+    axes = sorted(
+        zip(*np.nonzero(room > 0.0), strict=True),
+        key=lambda axis: (AXES[axis[1]] == "yaw", -room[axis]),
+    )
+    if K < 1 or (K > 1 and not axes):
+        raise ScenarioError(
+            f"the work area cannot be split into {K} regions",
+            remedy="Give positive numbers of regions, and objects that have room to move.",
+        )
+    counts = np.ones_like(room, dtype=np.int64)
+    for i, factor in enumerate(_prime_factors(K)):
+        counts[axes[i % len(axes)]] *= factor
+    named = {
+        f"{item.name}.{axis}": int(counts[i, j])
+        for i, item in enumerate(area.objects)
+        for j, axis in enumerate(AXES)
+    }
+    return grid_regions(area, named)
+
+
+def _prime_factors(number: int) -> list[int]:
+    factors, candidate = [], 2
+    while number > 1:
+        while number % candidate == 0:
+            factors.append(candidate)
+            number //= candidate
+        candidate += 1
+    return factors[::-1]
+
+
+def run_seed(seed: int, K: int, run: int) -> int:
+    """Seed of one run of a study; an ordinary run with this seed and grid is the same run."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(K, run))
+    return int(sequence.generate_state(1, np.uint64)[0])
+
+
+@dataclass(frozen=True)
+class StudyRun:
+    """What is kept of one run.
+
+    Attributes:
+        K: number of regions.
+        run: from 0.
+        seed: of the run, see `run_seed`.
+        status: how it ended, "certified" or "insufficient".
+        demonstrations: how many were in hand then.
+        rounds: of self-evaluation.
+        samples: instances drawn in all rounds together.
+        names: of the demonstrations, in the order in which they were given.
+    """
+
+    K: int
+    run: int
+    seed: int
+    status: str
+    demonstrations: int
+    rounds: int
+    samples: int
+    names: tuple[str, ...]
+
+    @property
+    def certified(self) -> bool:
+        """Whether it ended with a certificate."""
+        return self.status == "certified"
+
+
+class Experiment:
+    """Carries out runs of one scenario with any number of regions, on one thread.
+
+    Args:
+        scenario: all but its regions is used; its seed is the study's.
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.setup = Setup(scenario)
+        self.setup.batch_planner.threads = 1
+        self._learned: dict[Path, Demonstration] = {}
+
+    def run(self, K: int, run: int) -> StudyRun:
+        """Carry a run out and keep its counts."""
+        rounds, samples = 0, 0
+        for event in self.events(K, run):
+            if isinstance(event, RoundFinished):
+                rounds += 1
+                samples += event.verdict.total_samples
+        assert isinstance(event, Finished)
+        names = tuple(d.name for d in event.demonstrations)
+        seed = run_seed(self.setup.scenario.seed, K, run)
+        return StudyRun(K, run, seed, event.status.value, len(names), rounds, samples, names)
+
+    def events(self, K: int, run: int) -> Iterator[Event]:
+        """All events of a run."""
+        setup = self.setup
+        seed = run_seed(setup.scenario.seed, K, run)
+        regions = split(setup.area, K)
+        evaluator = Evaluator(setup.planner, regions, setup.workcell.start, setup.strategy, seed)
+        return acquire(
+            evaluator.evaluate,
+            self._teacher(regions),
+            self._learn,
+            regions,
+            initial=setup.initial,
+            budget=setup.scenario.demonstrations.budget,
+            seed=seed,
+        )
+
+    def _teacher(self, regions: GridRegions) -> Teacher:
+        teacher = self.setup.teacher
+        if isinstance(teacher, RecordedTeacher):
+            return replace(teacher, regions=regions)
+        return teacher
+
+    def _learn(self, recording: Recording) -> Demonstration:
+        if recording.source is None:
+            return self.setup.learn(recording)
+        if recording.source not in self._learned:
+            self._learned[recording.source] = self.setup.learn(recording)
+        return self._learned[recording.source]

@@ -1,0 +1,278 @@
+"""A study: many runs of a scenario for each of several numbers of regions.
+
+It is the experiment of Das et al. (arXiv 2410.18275) on how many demonstrations a run needs. Every
+run has its own seed and so its own first place and its own fresh instances. A study directory holds
+`runs.csv`, to which every finished run is appended at once, so that an interrupted study resumes
+with the runs that are missing; in the end the table is sorted, and so is the same however the runs
+were shared out.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import cached_property
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.studies.pockets import draw_pocket
+from drake_screw.runs.directory import SCENARIO, file_hash, write_text
+from drake_screw.scenario.schema import Scenario
+from drake_screw.studies.pool import results
+from drake_screw.studies.experiment import Experiment, StudyRun, split
+from drake_screw.studies.table import HEADER, csv_text, read_runs, row
+from drake_screw.studies.figures import Distribution, save_distributions
+
+FORMAT = 1
+STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"
+FINISHED = "finished"
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study that can be carried out, or carried on.
+
+    Attributes:
+        path: of its directory.
+        scenario: what is studied.
+        record: contents of study.json.
+    """
+
+    path: Path
+    scenario: Scenario
+    record: dict[str, Any] = field(repr=False)
+
+    @property
+    def regions(self) -> tuple[int, ...]:
+        """The numbers of regions K, rising."""
+        return tuple(self.record["regions"])
+
+    @property
+    def runs(self) -> int:
+        """Runs for each K."""
+        return int(self.record["runs"])
+
+    @cached_property
+    def experiment(self) -> Experiment:
+        """The runs as this process would carry them out."""
+        return Experiment(self.scenario)
+
+    def finished_runs(self) -> tuple[StudyRun, ...]:
+        """The runs in the table, sorted by K and number."""
+        return tuple(sorted(read_runs(self.path / RUNS), key=lambda run: (run.K, run.run)))
+
+    def carry_out(self, workers: int | None = None) -> Iterator[StudyRun]:
+        """Carry out the runs that are missing, then write summary and pictures.
+
+        Interrupting it leaves a directory that can be carried on; at most the runs in progress are
+        lost.
+
+        Args:
+            workers: processes to use, with one thread each; as many as processors if None. They
+                make no difference to the result.
+
+        Yields:
+            Each run as it is finished.
+
+        Raises:
+            RunDirectoryError: the table is damaged, or a process was killed.
+        """
+        finished = self.finished_runs()
+        table = self.path / RUNS
+        write_text(table, csv_text([HEADER, *map(row, finished)]))
+        done = {(run.K, run.run) for run in finished}
+        missing = [(K, i) for i in range(self.runs) for K in self.regions if (K, i) not in done]
+        self._save("running")
+        scenario = self.path / SCENARIO
+        try:
+            with table.open("a") as lines:
+                for run in results(self.experiment, scenario, missing, workers or os.cpu_count()):
+                    lines.write(csv_text([row(run)]))
+                    lines.flush()
+                    yield run
+            self._conclude()
+        except BaseException:
+            self._save("interrupted")
+            raise
+
+    def summary(self) -> dict[int, Distribution]:
+        """How many demonstrations the finished runs needed, by K."""
+        runs = self.finished_runs()
+        chosen = {K: [run for run in runs if run.K == K] for K in self.regions}
+        return {
+            K: Distribution(
+                tuple(run.demonstrations for run in of_K if run.certified),
+                sum(not run.certified for run in of_K),
+            )
+            for K, of_K in chosen.items()
+            if of_K
+        }
+
+    def _conclude(self) -> None:
+        runs, summary = self.finished_runs(), self.summary()
+        write_text(self.path / RUNS, csv_text([HEADER, *map(row, runs)]))
+        write_text(self.path / SUMMARY, _summary_csv(summary))
+        name = self.scenario.name
+        save_distributions(summary, self.path / "distributions", scenario=name)
+        draw_pocket(self.experiment, runs, self.path / "hidden_pocket")
+        self._save(FINISHED)
+
+    def _save(self, status: str) -> None:
+        self.record["status"] = status
+        self.record["finished"] = _now() if status == FINISHED else None
+        write_text(self.path / STUDY, json.dumps(self.record, indent=2) + "\n")
+
+
+def new_study(
+    scenario: Scenario, regions: Sequence[int], runs: int, output: Path | None = None
+) -> Study:
+    """Check a scenario to the bottom, then make a study directory.
+
+    Args:
+        scenario: what to study; its own regions are not used, its seed is the study's.
+        regions: numbers of regions K, see `study_runs.split`.
+        runs: for each K, at least 1.
+        output: directory, which must not exist or be empty; ``studies/<name>/<time>`` if None.
+
+    Raises:
+        DrakeScrewError: something cannot be used; nothing is written then.
+    """
+    if runs < 1 or not regions:
+        raise ScenarioError(
+            f"{runs} runs for {len(regions)} numbers of regions",
+            remedy="Give at least one run, and one number of regions.",
+        )
+    if scenario.teacher.kind == "interactive":
+        raise ScenarioError(
+            "teacher.kind: an interactive teacher would be asked in every run of a study",
+            remedy="Give --demonstrations DIR, or a scenario with a simulated teacher.",
+            file=scenario.source,
+        )
+    setup = Experiment(scenario).setup
+    for K in regions:
+        split(setup.area, K)
+    for part in (setup.strategy, setup.teacher, setup.initial):
+        assert part is not None
+    model = setup.workcell.model_file
+    path = output or _fresh(Path("studies") / scenario.name)
+    record = {
+        "format": FORMAT,
+        "scenario": scenario.name,
+        "status": "running",
+        "regions": sorted(set(regions)),
+        "runs": runs,
+        "seed": scenario.seed,
+        "strategy": scenario.coverage.strategy,
+        "model": str(model),
+        "hashes": {"model": file_hash(model)},
+        "versions": {
+            "python": platform.python_version(),
+            **{p: version(p) for p in ("drake-screw", "drake", "numpy", "scipy", "numba")},
+        },
+        "started": _now(),
+        "finished": None,
+    }
+    try:
+        if path.exists() and (not path.is_dir() or any(path.iterdir())):
+            raise RunDirectoryError(
+                "exists already; a study never overwrites anything",
+                remedy="Give another --output, or continue a study with --resume.",
+                file=path,
+            )
+        path.mkdir(parents=True, exist_ok=True)
+        write_text(path / SCENARIO, dump_scenario(scenario))
+        write_text(path / RUNS, csv_text([HEADER]))
+        write_text(path / STUDY, json.dumps(record, indent=2) + "\n")
+    except OSError as error:
+        raise RunDirectoryError(
+            f"cannot be written: {error.strerror}",
+            remedy="Choose a folder you may write to with --output.",
+            file=path,
+        ) from error
+    return Study(path, load_scenario(path / SCENARIO), record)
+
+
+def open_study(path: Path) -> Study:
+    """Open a study directory, to carry it on or to draw its pictures again.
+
+    Raises:
+        RunDirectoryError: it is not one, is damaged, or the robot model is not the same any more.
+    """
+    file = path / STUDY
+    if not file.is_file():
+        raise RunDirectoryError(
+            f"not a study directory: it has no {STUDY}",
+            remedy="Give the folder that a study printed.",
+            file=path,
+        )
+    try:
+        record = json.loads(file.read_text())
+        found, model = record["format"], record["hashes"]["model"]
+        if not {"regions", "runs"} <= record.keys():
+            raise KeyError("keys are missing")
+    except (ValueError, KeyError, TypeError) as error:
+        raise RunDirectoryError(
+            f"damaged: {error}", remedy="Restore it, or begin the study again.", file=file
+        ) from error
+    if found != FORMAT:
+        raise RunDirectoryError(
+            f"written in format {found}; this version reads format {FORMAT}",
+            remedy=f"Use the version that wrote it ({record.get('versions', {})}).",
+            file=file,
+        )
+    study = Study(path, load_scenario(path / SCENARIO), record)
+    used = study.experiment.setup.workcell.model_file
+    if file_hash(used) != model:
+        raise RunDirectoryError(
+            f"the robot model {used} has changed since this study began",
+            remedy="Put the model back as it was, or begin the study again.",
+            file=path,
+        )
+    return study
+
+
+def numbers_of_regions(text: str) -> tuple[int, ...]:
+    """Reads ``1,2,4,8,16``.
+
+    Raises:
+        ScenarioError: it is not such a list.
+    """
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError as error:
+        raise ScenarioError(
+            f"'{text}' is not a list of numbers of regions", remedy="Write, say, 1,2,4,8,16."
+        ) from error
+
+
+def _summary_csv(summary: dict[int, Distribution]) -> str:
+    rows: list[tuple[object, ...]] = [
+        ("K", "demonstrations", "runs", "probability", "mean", "max", "not_certified")
+    ]
+    for K, found in summary.items():
+        ends = f"{found.mean:.6g}", found.most, found.without
+        rows += [
+            (K, number, count, f"{count / found.runs:.6g}", *ends)
+            for number, count in found.counts.items()
+        ]
+    return csv_text(rows)
+
+
+def _fresh(parent: Path) -> Path:
+    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
+    path, count = parent / stamp, 1
+    while path.exists():
+        count += 1
+        path = parent / f"{stamp}_{count}"
+    return path
+
+
+def _now() -> str:
+    return datetime.now().astimezone().isoformat(timespec="seconds")

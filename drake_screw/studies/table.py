@@ -1,0 +1,58 @@
+"""The table of a study's runs: one line of CSV for each, appended as it is finished."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import fields
+from pathlib import Path
+
+from drake_screw.errors import RunDirectoryError
+from drake_screw.studies.experiment import StudyRun
+
+HEADER = tuple(field.name for field in fields(StudyRun))
+
+
+def csv_text(rows: Iterable[Sequence[object]]) -> str:
+    """Rows as lines of CSV."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
+
+
+def row(run: StudyRun) -> tuple[object, ...]:
+    """A run as a row below `HEADER`."""
+    return (*(getattr(run, name) for name in HEADER[:-1]), ";".join(run.names))
+
+
+def read_runs(file: Path) -> tuple[StudyRun, ...]:
+    """The runs in a table, without a last line that was not written to its end.
+
+    Raises:
+        RunDirectoryError: it is not a table of runs.
+    """
+    try:
+        whole, newline, _ = file.read_text().rpartition("\n")
+        header, *rows = csv.reader(io.StringIO(whole + newline))
+        if tuple(header) != HEADER:
+            raise ValueError("unknown columns")
+        return tuple(_parsed(cells) for cells in rows)
+    except (OSError, ValueError) as error:
+        raise RunDirectoryError(
+            f"damaged: {error}", remedy="Restore it, or begin the study again.", file=file
+        ) from error
+
+
+def _parsed(cells: list[str]) -> StudyRun:
+    K, run, seed, status, demonstrations, rounds, samples, names = cells
+    return StudyRun(
+        int(K),
+        int(run),
+        int(seed),
+        status,
+        int(demonstrations),
+        int(rounds),
+        int(samples),
+        tuple(names.split(";")) if names else (),
+    )

@@ -1,0 +1,113 @@
+"""The arm as a stick figure, from above and from the side: a picture that needs no renderer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from drake_screw.robot import ObjectConfig, TableConfig
+from drake_screw.screws import sclerp_position
+from drake_screw.tasks import WorkArea
+from drake_screw.typing import Array
+from drake_screw.visualization.attempt import FAILED, Attempt
+from drake_screw.visualization.linkage import Linkage
+from drake_screw.visualization.palette import INK, STATUS_COLORS
+
+_WOOD, _CLAY, _QUIET = "#e3d9c6", "#f4c95d", "#b9bcc8"
+
+
+def arm_sketch(
+    attempt: Attempt,
+    linkage: Linkage,
+    area: WorkArea,
+    objects: Sequence[ObjectConfig],
+    table: TableConfig | None,
+) -> str:
+    """Two views as one SVG: the arm at its start, on its way, and where the plan ended."""
+    chosen = attempt.samples(7)
+    q = attempt.plan.q[chosen]
+    joints = np.stack([linkage.joint_frames(j, q)[:, :3, 3] for j in range(attempt.arm.n)], axis=1)
+    hand = attempt.arm.pose(q)[:, None, :3, 3]
+    bodies = np.concatenate([joints, hand], axis=1)
+    above = _view(attempt, bodies, area, objects, table, np.array([[0, -1, 0], [-1, 0, 0]]))
+    side = _view(attempt, bodies, area, objects, table, np.array([[1, 0, 0], [0, 0, -1]]))
+    return (
+        f'<figure class="sketch">{above}<figcaption>from above</figcaption></figure>'
+        f'<figure class="sketch">{side}<figcaption>from its right side</figcaption></figure>'
+    )
+
+
+def _view(
+    attempt: Attempt,
+    bodies: Array,
+    area: WorkArea,
+    objects: Sequence[ObjectConfig],
+    table: TableConfig | None,
+    P: Array,
+) -> str:
+    """One view; P (2, 3) takes a point in W to the drawing's right and down, in m."""
+    parts: list[str] = []
+    corners = [bodies.reshape(-1, 3), attempt.guides[:, :3, 3], attempt.X_WO[:, :3, 3]]
+    upright = abs(P[1, 2]) > 0.5
+    if table is not None:
+        half = np.array(table.size) / 2.0
+        low = np.array([*(np.array(table.center) - half), table.top - table.thickness])
+        high = np.array([*(np.array(table.center) + half), table.top])
+        parts.append(_box(P @ low, P @ high, _WOOD, "none"))
+        corners.append(np.array([low, high]))
+    if not upright:
+        for item in area.objects:
+            low, high = np.array([*item.lower[:2], 0.0]), np.array([*item.upper[:2], 0.0])
+            parts.append(_box(P @ low, P @ high, "none", INK))
+    for shape, X in zip(objects, attempt.X_WO, strict=True):
+        x, y = 1e3 * (P @ X[:3, 3])
+        r, h = 1e3 * shape.radius, 1e3 * shape.height
+        parts.append(
+            f'<path d="M{x - r:.0f} {y - h:.0f}h{2 * r:.0f}l{-0.5 * r:.0f} {h:.0f}h{-r:.0f}z" '
+            f'fill="{_CLAY}" stroke="{INK}" stroke-width="4"/>'
+            if upright
+            else f'<circle cx="{x:.0f}" cy="{y:.0f}" r="{r:.0f}" fill="{_CLAY}" stroke="{INK}" '
+            'stroke-width="4"/>'
+        )
+    parts += [_line(body @ P.T, _QUIET, 9, 0.6) for body in bodies[1:-1]]
+    parts.append(_line(bodies[0] @ P.T, INK, 16))
+    color = INK if attempt.plan.success else STATUS_COLORS[FAILED]
+    parts.append(_line(bodies[-1] @ P.T, color, 16))
+    for x, y in 1e3 * bodies[-1] @ P.T:
+        parts.append(
+            f'<circle cx="{x:.0f}" cy="{y:.0f}" r="13" fill="#fff" stroke="{color}" '
+            'stroke-width="6"/>'
+        )
+    if attempt.failed_joint is not None:
+        x, y = 1e3 * P @ bodies[-1, attempt.failed_joint]
+        parts.append(
+            f'<circle cx="{x:.0f}" cy="{y:.0f}" r="42" fill="none" stroke="{color}" '
+            'stroke-width="12"/>'
+        )
+    s = np.linspace(0.0, 1.0, 21)
+    for segment, status in enumerate(attempt.status):
+        track = sclerp_position(attempt.starts[segment], attempt.guides[segment], s)
+        parts.append(_line(track @ P.T, STATUS_COLORS[status], 10))
+    flat = 1e3 * np.concatenate(corners) @ P.T
+    (left, top), (right, bottom) = flat.min(axis=0) - 60, flat.max(axis=0) + 60
+    return (
+        f'<svg viewBox="{left:.0f} {top:.0f} {right - left:.0f} {bottom - top:.0f}">'
+        f"{''.join(parts)}</svg>"
+    )
+
+
+def _line(points: Array, color: str, width: float, opacity: float = 1.0) -> str:
+    text = " ".join(f"{x:.0f},{y:.0f}" for x, y in 1e3 * points)
+    return (
+        f'<polyline points="{text}" fill="none" stroke="{color}" stroke-width="{width:g}" '
+        f'stroke-linejoin="round" stroke-linecap="round" opacity="{opacity:g}"/>'
+    )
+
+
+def _box(first: Array, second: Array, fill: str, stroke: str) -> str:
+    (x, y), (u, v) = 1e3 * np.minimum(first, second), 1e3 * np.maximum(first, second)
+    return (
+        f'<rect x="{x:.0f}" y="{y:.0f}" width="{u - x:.0f}" height="{v - y:.0f}" fill="{fill}" '
+        f'stroke="{stroke}" stroke-width="5"/>'
+    )

@@ -1,0 +1,154 @@
+"""Executing and exporting plans of a run: what the commands of these names do."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from drake_screw.acquisition import Suggestion
+from drake_screw.commands.export import export
+from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
+from drake_screw.runs.executions import execute, known_demonstrations, placed
+from drake_screw.runs.run import new_run, open_run
+from drake_screw.scenario.loader import load_scenario
+
+PLACE = (0.85, 0.3)
+OUTSIDE = (1.6, 0.3)
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(f.relative_to(folder)): f.read_bytes() for f in folder.rglob("*") if f.is_file()}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory) -> Path:
+    """A run that has one demonstration by the simulated teacher, and one region."""
+    scenario = load_scenario("pouring", ["regions.grid={x: 1}"])
+    run = new_run(scenario, tmp_path_factory.mktemp("runs") / "run")
+    at = np.array([[*PLACE, 0.0]])
+    lesson = run.setup.teacher.demonstrate(
+        Suggestion(0, at), number=0, used=(), rng=np.random.default_rng(1)
+    )
+    assert lesson.recording is not None
+    recording = replace(lesson.recording, name="shown")
+    run.directory.add_demonstration(0, recording, "", scenario.robot.parked)
+    return run.directory.path
+
+
+@pytest.fixture(scope="module")
+def executed(run) -> tuple[str, Path, dict[str, bytes]]:
+    """The summary of an execution, its folder, and the run's files before it."""
+    before = contents(run)
+    text = execute(run, instance=PLACE, workers=1)
+    (folder,) = (run / "executions").iterdir()
+    return text, folder, before
+
+
+def test_an_instance_is_executed_and_reported(executed):
+    text, folder, _ = executed
+    assert "1 instances, 1 executed" in text
+    assert "done                       1 of 1" in text
+    assert text.endswith(f"written to {folder}")
+    assert sorted(f.name for f in folder.iterdir()) == [
+        "executions.csv",
+        "executions.html",
+        "summary.txt",
+    ]
+    (row,) = csv.DictReader((folder / "executions.csv").open())
+    assert (row["demonstration"], row["status"]) == ("shown", "done")
+    assert row["contacts"] == row["outside_limits"] == ""
+    assert float(row["velocity_over_limit"]) <= 1.0
+    assert float(row["tracking_mm"]) < 5.0
+    assert float(row["tracking_mrad"]) < 20.0
+    assert float(row["final_mm"]) < 2.0
+    assert float(row["final_mrad"]) < 10.0
+
+
+def test_the_runs_own_files_stay_as_they_are(run, executed):
+    _, _, before = executed
+    after = contents(run)
+    assert {name: after[name] for name in before} == before
+    assert all(name.startswith("executions/") for name in after.keys() - before.keys())
+
+
+def test_fresh_instances_are_drawn_until_enough_are_executed(run, executed):
+    """The one demonstration does not solve the whole area; what it does not is told."""
+    text = execute(run, per_region=1, workers=1)
+    first = text.splitlines()[0]
+    drawn, done = int(first.split()[0]), int(first.split()[2])
+    assert done == 1
+    assert text.count("no plan: ") == drawn - done
+
+
+def test_an_instance_without_a_plan_is_told_with_its_reason(run):
+    text = execute(run, instance=OUTSIDE, workers=1)
+    assert "1 instances, 0 executed" in text
+    assert "no plan: with shown, " in text
+    assert "segment" in text
+
+
+@pytest.mark.parametrize("format", ["baxter-csv", "ros-trajectory", "npz"])
+def test_a_plan_is_exported(run, tmp_path, format):
+    file = tmp_path / "plan"
+    text = export(run, PLACE, format, file)
+    assert text.startswith("planned with shown: ")
+    assert text.endswith(f"written to {file}")
+    assert file.stat().st_size > 1000
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_exports_start_where_the_scenario_does(run, tmp_path):
+    export(run, PLACE, "npz", tmp_path / "plan.npz")
+    with np.load(tmp_path / "plan.npz") as data:
+        np.testing.assert_allclose(data["q"][0], open_run(run).setup.workcell.start)
+        assert data["t"][-1] > 1.0
+
+
+def test_an_export_where_there_is_no_plan_says_why(run, tmp_path):
+    with pytest.raises(ScenarioError, match="no demonstration of this run gives a plan there"):
+        export(run, OUTSIDE, "npz", tmp_path / "plan.npz")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_format_names_those_there_are(run, tmp_path):
+    with pytest.raises(ScenarioError, match="Did you mean 'baxter-csv'") as error:
+        export(run, PLACE, "baxter_csv", tmp_path / "plan")
+    assert "ros-trajectory" in str(error.value)
+
+
+def test_an_export_into_nowhere_is_refused(run, tmp_path):
+    with pytest.raises(RunDirectoryError, match="cannot be written"):
+        export(run, PLACE, "npz", tmp_path / "missing" / "plan.npz")
+
+
+@pytest.mark.parametrize("numbers", [(), (0.8,), (0.8, 0.1, 0.0, 1.0), (0.8, float("nan"))])
+def test_an_instance_takes_two_or_three_numbers(run, numbers):
+    with pytest.raises(ScenarioError, match="Give x and y in m"):
+        placed(open_run(run).setup, numbers)
+
+
+def test_an_instance_may_have_a_yaw(run):
+    setup = open_run(run).setup
+    np.testing.assert_array_equal(placed(setup, (0.8, 0.1)), [[0.8, 0.1, 0.0]])
+    np.testing.assert_array_equal(placed(setup, (0.8, 0.1, 0.5)), [[0.8, 0.1, 0.5]])
+
+
+def test_known_demonstrations_have_the_runs_names(run):
+    (demonstration,) = known_demonstrations(open_run(run))
+    assert demonstration.name == "shown"
+
+
+def test_a_run_without_demonstrations_says_so(tmp_path):
+    run = new_run(load_scenario("pouring"), tmp_path / "run").directory.path
+    with pytest.raises(RunDirectoryError, match="no demonstrations yet"):
+        execute(run)
+    assert not (run / "executions").exists()
+
+
+def test_what_is_no_run_is_refused(tmp_path):
+    with pytest.raises(DrakeScrewError, match="not a run directory"):
+        execute(tmp_path)

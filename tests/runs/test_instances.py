@@ -1,0 +1,68 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from drake_screw.errors import ScenarioError
+from drake_screw.planning import Cause, Outcomes
+from drake_screw.runs.instance_tables import outcomes_csv, read_instances
+from drake_screw.tasks import ObjectArea, WorkArea
+
+BOWL = ObjectArea("bowl", (0.5, -0.5, 0.25), (1.0, 0.5, 0.25), -0.06)
+CUP = ObjectArea("cup", (0.5, -0.5, -1.0), (1.0, 0.5, 1.0), 0.0)
+ONE, TWO = WorkArea((BOWL,)), WorkArea((BOWL, CUP))
+
+
+def write(tmp_path, text):
+    file = tmp_path / "in.csv"
+    file.write_text(text)
+    return file
+
+
+def test_columns_are_found_by_name_in_any_order(tmp_path):
+    file = write(tmp_path, "note,y,x\na,0.1,0.6\n\nb,0.2,0.7\n")
+    expected = [[[0.6, 0.1, 0.25]], [[0.7, 0.2, 0.25]]]
+    assert np.array_equal(read_instances(file, ONE), expected)
+
+
+def test_several_objects_have_their_own_columns(tmp_path):
+    file = write(tmp_path, "bowl.x,bowl.y,cup.x,cup.y,cup.yaw\n0.6,0.1,0.8,-0.1,0.5\n")
+    expected = [[[0.6, 0.1, 0.25], [0.8, -0.1, 0.5]]]
+    assert np.array_equal(read_instances(file, TWO), expected)
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "line"),
+    [
+        ("x,z\n1,2\n", "no column 'y'", 1),
+        ("", "no column 'x'", 1),
+        ("x,y\n1,2\n1,two\n", "y is 'two'", 3),
+        ("x,y\n1\n", "y is 'nothing'", 2),
+        ("x,y\n1,inf\n", "y is 'inf'", 2),
+        ("x,y\n", "no instances", None),
+    ],
+)
+def test_bad_tables_are_refused_with_their_place(tmp_path, text, message, line):
+    file = write(tmp_path, text)
+    with pytest.raises(ScenarioError, match=message) as error:
+        read_instances(file, ONE)
+    assert (error.value.file, error.value.line) == (file, line)
+
+
+def test_a_missing_table(tmp_path):
+    with pytest.raises(ScenarioError, match="No such file"):
+        read_instances(tmp_path / "none.csv", ONE)
+
+
+def test_outcomes_are_written_as_codes():
+    outcomes = Outcomes(
+        np.array([[Cause.SUCCESS, Cause.JOINT_LIMIT], [Cause.UNREACHABLE, Cause.COLLISION]], "u1"),
+        np.array([[-1, 2], [0, 1]], "i2"),
+        np.array([[-1, 4], [-1, -1]], "i1"),
+        np.ones((2, 2), "f4"),
+    )
+    x_y_yaw = np.array([[[0.6, 0.1, 0.25]], [[0.7, 0.2, 0.25]]])
+    text = outcomes_csv(x_y_yaw, outcomes, ["a", "b"], ONE)
+    assert text == "x,y,a,b\n0.6,0.1,0:0,3:5\n0.7,0.2,1:n,2:c\n"
+    x_y_yaw[1, 0, 2] = 0.5
+    assert outcomes_csv(x_y_yaw, outcomes, ["a", "b"], ONE).startswith("x,y,yaw,a,b\n")
