@@ -1,0 +1,225 @@
+"""Guiding poses that keep what was shown: every sample near an object, in place and in turn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from drake_screw.demonstrations.regions import Regions, regions_of_interest
+from drake_screw.demonstrations.screw_fit import fewest_screws, nearest_screws
+from drake_screw.demonstrations.smoothing import smoothed
+from drake_screw.screws import (
+    inverse,
+    quaternion_from_rotation,
+    rotation_angle,
+    translation_distance,
+)
+from drake_screw.typing import Array
+
+SCATTER = 0.1
+"""Of a tolerance: a recording of which half of the samples are farther off a smooth motion
+scatters. Those of people on a Baxter are at 0.04 to 0.05; with 3 mrad of noise, at 0.2 to 0.4."""
+
+_RESERVE = 0.98  # of the tolerances, so that a check by sampled screws finds them kept
+
+
+@dataclass(frozen=True)
+class FaithfulConfig:
+    """Tolerances of faithful segmentation.
+
+    Attributes:
+        spacing: m, and
+        turn_spacing: rad; a path may be cut only at poses that differ by one of these.
+        position_tolerance: m, largest distance of a sample from the screws.
+        rotation_tolerance: rad, largest angle of a sample from them, at the same place of the
+            screw.
+        region_of_interest: times the smallest hand-object distance is near the object.
+        reach: m; an object that the hand does not come within is a bystander.
+
+    Raises:
+        ValueError: thinning would lose poses that are beyond the tolerances, or a tolerance is out
+            of its range.
+    """
+
+    spacing: float = 0.004
+    turn_spacing: float = 0.03
+    position_tolerance: float = 0.010
+    rotation_tolerance: float = 0.1
+    region_of_interest: float = 1.5
+    reach: float = 0.35
+
+    def __post_init__(self) -> None:
+        closest = _RESERVE * (1.0 - SCATTER)
+        if not 0.0 < self.spacing <= closest * self.position_tolerance:
+            raise ValueError("spacing must be positive and below position_tolerance")
+        if not 0.0 < self.turn_spacing <= closest * self.rotation_tolerance:
+            raise ValueError("turn_spacing must be positive and below rotation_tolerance")
+        if self.rotation_tolerance > 1.0:
+            raise ValueError("rotation_tolerance must be at most 1 rad")
+        if self.region_of_interest < 1.0:
+            raise ValueError("region_of_interest must be at least 1")
+
+    def regions(self, X_WE: Array, X_WO: Array, named: Sequence[int] | None = None) -> Regions:
+        """The visits of a hand path (m, 4, 4) to objects at X_WO (k, 4, 4); `named` if known."""
+        return regions_of_interest(
+            X_WE,
+            X_WO,
+            factor=self.region_of_interest,
+            reach=self.reach,
+            slack=self.position_tolerance,
+            named=named,
+        )
+
+
+def faithful_segments(X_WE: Array, config: FaithfulConfig) -> NDArray[np.int64]:
+    """Indices of the poses of a path (m, 4, 4) between which constant screws lead.
+
+    As few as there can be, if the path is cut at thinned poses only, so that each of the m poses is
+    within both tolerances of the screws at one and the same parameter, in the order shown (see
+    `screw_fit`). The first and the last pose are among them, unless the hand stands still: then
+    the first is the only one. Turning the path of poses back to front gives as many.
+
+    A turn in place of 1.5 rad between two straight lines, and half a minute of standing still:
+
+    >>> from drake_screw.screws import pose_from_planar
+    >>> shown = np.zeros((3201, 3))
+    >>> shown[:101, 0], shown[101:, 0] = np.linspace(0, 0.1, 101), 0.1
+    >>> shown[101:151, 2], shown[151:, 2] = np.linspace(0, 1.5, 50), 1.5
+    >>> shown[3151:, 1] = np.linspace(0, 0.05, 50)
+    >>> cuts = faithful_segments(pose_from_planar(shown), FaithfulConfig())
+    >>> len(cuts), 98 < cuts[1] < 104
+    (4, True)
+    """
+    candidates = _where_to_cut(X_WE, config)
+    if len(candidates) == 1:
+        return candidates
+    return fewest_screws(
+        X_WE,
+        candidates,
+        _RESERVE * config.position_tolerance,
+        _RESERVE * config.rotation_tolerance,
+    )
+
+
+def scatters(X_WE: Array, X_smoothed: Array, config: FaithfulConfig) -> bool:
+    """Whether half of the samples are off the smoothed path by `SCATTER` of a tolerance."""
+    place = translation_distance(X_WE, X_smoothed) / config.position_tolerance
+    turn = rotation_angle(X_WE, X_smoothed) / config.rotation_tolerance
+    return bool(np.median(np.maximum(place, turn)) > SCATTER)
+
+
+def _scattered_segments(
+    X_WE: Array, X_smoothed: Array, config: FaithfulConfig
+) -> NDArray[np.int64]:
+    """As many screws as the smoothed path needs, through its poses, near the samples as recorded.
+
+    So that samples that scatter little would be held as well, the smoothed path is held more
+    closely, by as much as that is.
+    """
+    position_tolerance = _RESERVE * config.position_tolerance
+    rotation_tolerance = _RESERVE * config.rotation_tolerance
+    closely = 1.0 - SCATTER
+    candidates = _where_to_cut(X_smoothed, config)
+    if len(candidates) == 1:
+        return candidates
+    cuts = fewest_screws(
+        X_smoothed, candidates, closely * position_tolerance, closely * rotation_tolerance
+    )
+    nearest = nearest_screws(
+        X_smoothed,
+        candidates,
+        position_tolerance,
+        rotation_tolerance,
+        most=len(cuts) - 1,
+        samples=X_WE,
+    )
+    return nearest if len(nearest) else cuts
+
+
+def _where_to_cut(X_WE: Array, config: FaithfulConfig) -> NDArray[np.int64]:
+    """Poses thinned from both ends, so that a path and its reverse may be cut at the same ones."""
+    forward = thin(X_WE, config.spacing, config.turn_spacing)
+    backward = len(X_WE) - 1 - thin(X_WE[::-1], config.spacing, config.turn_spacing)
+    return forward if len(forward) == 1 else np.union1d(forward, backward)
+
+
+def faithful_guiding_poses(
+    X_WE: Array,
+    X_WO: Array,
+    config: FaithfulConfig,
+    *,
+    t: Array | None = None,
+    named: Sequence[int] | None = None,
+) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
+    """Guiding poses of a recorded hand path, each in the frame of the object it belongs to.
+
+    Each visit to an object of the task (see `regions_of_interest`) has guiding poses of its own,
+    from its first sample to its last. They are recorded poses, and the promise of
+    `faithful_segments` is for the samples as recorded.
+
+    If times are given, a recording whose samples scatter about a smooth motion (by coarse rounding
+    or noise: half of them by more than `SCATTER` of a tolerance, 1 mm by default) does not get a
+    screw more for every sample that is thrown far off. It has as many screws as the smoothed
+    motion, through poses of the latter, and these keep as near to the samples as so many can: within
+    the tolerances, or by as little beyond as `fidelity` says.
+
+    Args:
+        X_WE: (m, 4, 4) hand poses over time.
+        X_WO: (k, 4, 4) object poses.
+        config: tolerances.
+        t: (m,) s.
+        named: indices of the objects of the task, if they are known.
+
+    Returns:
+        X_OE (g, 4, 4); the object's index (g,); the index (g,) into the path. All empty if the hand
+        comes near no object of the task.
+    """
+    visits = config.regions(X_WE, X_WO, named).visits
+    X_smoothed = X_WE if t is None else smoothed(X_WE, t)
+    shown, cuts = [np.zeros((0, 4, 4))], [np.zeros(0, dtype=np.int64)]
+    for visit in visits:
+        X, Z = X_WE[visit.start : visit.stop], X_smoothed[visit.start : visit.stop]
+        if scatters(X, Z, config):
+            found = _scattered_segments(X, Z, config)
+            X = Z
+        else:
+            found = faithful_segments(X, config)
+        cuts.append(visit.start + found)
+        shown.append(X[found])
+    owner = np.repeat(
+        np.array([v.object for v in visits], dtype=np.int64), [len(c) for c in cuts[1:]]
+    )
+    return inverse(X_WO[owner]) @ np.concatenate(shown), owner, np.concatenate(cuts)
+
+
+def thin(X_WE: Array, spacing: float, turn_spacing: float) -> NDArray[np.int64]:
+    """Indices of poses of a path that differ from the one kept before, by place or by turn.
+
+    Args:
+        X_WE: (m, 4, 4).
+        spacing: m.
+        turn_spacing: rad; whichever of the two is reached first.
+
+    Returns:
+        (c,) the first pose, each that differs, and the last pose; the first alone if none differs.
+    """
+    q = quaternion_from_rotation(X_WE[:, :3, :3])
+    kept = _thin(np.ascontiguousarray(X_WE[:, :3, 3]), q, spacing, turn_spacing)
+    if len(kept) > 1 and kept[-1] != len(X_WE) - 1:
+        kept = np.append(kept, len(X_WE) - 1)
+    return kept
+
+
+@njit(cache=True)
+def _thin(p, q, spacing, turn_spacing):
+    kept = [0]
+    for i in range(1, len(p)):
+        k = kept[-1]
+        cosine = abs((q[i] * q[k]).sum())
+        if ((p[i] - p[k]) ** 2).sum() >= spacing**2 or cosine <= np.cos(0.5 * turn_spacing):
+            kept.append(i)
+    return np.array(kept)

@@ -1,0 +1,284 @@
+"""The fewest constant screws that hold a path of poses within tolerances, in the order shown.
+
+A screw leads from one pose of the path to another. It holds the poses between if each can be given
+a parameter s in [0, 1], never less than that of the pose before, at which the screw is within the
+position *and* the rotation tolerance of it. Giving each pose the least admissible s is enough to
+decide that: whatever other assignment there is, its parameters are nowhere smaller, so it leaves
+later poses no more to choose from.
+
+The least admissible s is found by stepping as far as the tolerances are missed. Along a constant
+screw the origin moves at one speed L and the frame turns at one speed theta, so a pose that is
+missed by d metres stays missed for d / L, and one missed by a radians for a / theta. Steps have a
+least length of 1 % of the tolerances: a pose that a screw touches for less than that may count as
+missed. Nothing that counts as held is missed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from drake_screw.screws import quaternion_from_rotation
+from drake_screw.typing import Array
+
+LARGEST_TURN = 3.0  # rad; at pi a screw between two poses is no longer the only one
+_REFINEMENTS = 5  # halvings of the share of the tolerances at which as many screws still do
+_LEAST_STEP = 0.01
+
+
+def fewest_screws(
+    X_WE: Array,
+    candidates: Array,
+    position_tolerance: float,
+    rotation_tolerance: float,
+    *,
+    samples: Array | None = None,
+) -> Array:
+    """Where to cut a path so that the fewest constant screws hold all of its poses.
+
+    A breadth-first search over the candidates: those reached from the first by one screw, by two,
+    and so on. Of the ways with the fewest screws it takes one whose worst deviation, in proportion
+    to the tolerances, is least to within 1/32 of them. No screw turns by more than `LARGEST_TURN`,
+    unless it leads from a candidate to the very next.
+
+    Args:
+        X_WE: (m, 4, 4) a path.
+        candidates: (c,) increasing indices at which it may be cut, the first 0, the last m - 1. A
+            path always has an answer if the poses between two neighbours are within the tolerances
+            of one of them.
+        position_tolerance: m.
+        rotation_tolerance: rad, at most 1.
+        samples: (m, 4, 4) poses that are held in place of the path's own.
+
+    Returns:
+        (g,) indices, the first and the last pose among them; none if even the screws from each
+        candidate to the next do not hold the poses.
+    """
+    path = _Path.of(
+        X_WE,
+        X_WE if samples is None else samples,
+        np.asarray(candidates, dtype=np.int64),
+        (position_tolerance, rotation_tolerance),
+    )
+    count = len(path.candidates)
+    failed, anywhere = np.zeros((count, count)), np.full(count, -1)
+    screws, before = path.search(anywhere, failed, 1.0)
+    if screws[-1] < 0:
+        return path.candidates[:0]
+    # A candidate on a way with the fewest screws is reached by the fewest from both ends, whatever
+    # the tolerances: so there is one number of screws at which it is of use.
+    rank = np.where(screws >= 0, screws, count)
+    from_end = np.where(screws >= 0, screws[-1] - screws, count)[::-1]
+    to_end, _ = path.backwards().search(from_end, failed[::-1, ::-1].T.copy(), 1.0)
+    rank = np.where(to_end[::-1] >= 0, rank, count)
+    nearer = path.nearest(int(screws[-1]), rank, failed, 1.0)
+    return path.cuts(before) if nearer is None else nearer
+
+
+def nearest_screws(
+    X_WE: Array,
+    candidates: Array,
+    position_tolerance: float,
+    rotation_tolerance: float,
+    *,
+    most: int,
+    samples: Array,
+    widest: float = 3.0,
+) -> Array:
+    """Where to cut a path so that a number of constant screws stay as near to samples as they can.
+
+    Args:
+        X_WE, candidates, position_tolerance, rotation_tolerance, samples: as for `fewest_screws`.
+        most: screws.
+        widest: times the tolerances.
+
+    Returns:
+        (g,) indices, for the least share of the tolerances (to within `widest` / 32) at which at
+        most so many screws hold the samples; none if that takes more than `widest`.
+    """
+    tolerances = position_tolerance, rotation_tolerance
+    path = _Path.of(X_WE, samples, np.asarray(candidates, dtype=np.int64), tolerances)
+    count = len(path.candidates)
+    nearest = path.nearest(most, np.full(count, -1), np.zeros((count, count)), widest)
+    return path.candidates[:0] if nearest is None else nearest
+
+
+@dataclass(frozen=True)
+class _Path:
+    """What a search is about.
+
+    Attributes:
+        p, q: (m, 3) m and (m, 4), positions and quaternions between which screws lead.
+        P, Q: the same of the samples to be held.
+        candidates: (c,) where to cut.
+        tolerances: m and rad.
+    """
+
+    p: Array
+    q: Array
+    P: Array
+    Q: Array
+    candidates: Array
+    tolerances: tuple[float, float]
+
+    @classmethod
+    def of(
+        cls, X_WE: Array, samples: Array, candidates: Array, tolerances: tuple[float, float]
+    ) -> _Path:
+        p, P = (np.ascontiguousarray(X[:, :3, 3]) for X in (X_WE, samples))
+        q, Q = (quaternion_from_rotation(X[:, :3, :3]) for X in (X_WE, samples))
+        return cls(p, q, P, Q, candidates, tolerances)
+
+    def backwards(self) -> _Path:
+        p, q, P, Q = (np.ascontiguousarray(a[::-1]) for a in (self.p, self.q, self.P, self.Q))
+        return _Path(p, q, P, Q, len(p) - 1 - self.candidates[::-1], self.tolerances)
+
+    def cuts(self, before: Array) -> Array:
+        """The candidates on the way to the last one, each with the one before it."""
+        way = [len(self.candidates) - 1]
+        while way[-1] > 0:
+            way.append(int(before[way[-1]]))
+        return self.candidates[way[::-1]]
+
+    def nearest(self, most: int, rank: Array, failed: Array, widest: float) -> Array | None:
+        """Cuts for the least share of the tolerances, below `widest`, at which so many screws do."""
+        nearest, low, high = None, 0.0, widest
+        for _ in range(_REFINEMENTS):
+            middle = 0.5 * (low + high)
+            screws, before = self.search(rank, failed, middle)
+            if 0 <= screws[-1] <= most:
+                nearest, high = self.cuts(before), middle
+            else:
+                low = middle
+        return nearest
+
+    def search(self, rank: Array, failed: Array, share: float) -> tuple[Array, Array]:
+        """How many screws lead to each candidate, -1 if none do, and the candidate before.
+
+        Args:
+            rank: (c,) the only number of screws by which each may be reached; -1 for any.
+            failed: (c, c) share of the tolerances at which a screw is known not to hold; updated.
+            share: of the tolerances.
+        """
+        return _search(
+            self.p, self.q, self.P, self.Q, self.candidates, rank, failed, share, *self.tolerances
+        )
+
+
+@njit(cache=True)
+def _search(p, q, P, Q, candidates, rank, failed, share, position_tolerance, rotation_tolerance):
+    count = len(candidates)
+    place, turn = share * position_tolerance, share * rotation_tolerance
+    screws, before, killer = np.full(count, -1), np.full(count, -1), np.full(count, -1)
+    screws[0] = 0
+    every = np.arange(len(p))
+    for number in range(1, count):
+        advanced = False
+        for j in range(number, count):
+            if screws[j] >= 0 or (rank[j] >= 0 and rank[j] != number):
+                continue
+            for i in range(j - 1, -1, -1):
+                if screws[i] != number - 1 or failed[i, j] >= share:
+                    continue
+                a, b = candidates[i], candidates[j]
+                screw = _screw(p, q, a, b)
+                held = j == i + 1 or 2.0 * screw[0] <= LARGEST_TURN
+                if held and a <= killer[i] <= b:
+                    held = (
+                        _first_missed(
+                            p, q, P, Q, a, screw, every, killer[i], killer[i] + 1, place, turn
+                        )
+                        < 0
+                    )
+                if held:
+                    missed = _first_missed(p, q, P, Q, a, screw, candidates, i, j + 1, place, turn)
+                    if missed < 0:
+                        missed = _first_missed(p, q, P, Q, a, screw, every, a, b + 1, place, turn)
+                    held = missed < 0
+                    if not held:
+                        killer[i] = missed
+                if held:
+                    screws[j], before[j], advanced = number, i, True
+                    break
+                failed[i, j] = share
+        if screws[count - 1] >= 0 or not advanced:
+            break
+    return screws, before
+
+
+@njit(cache=True)
+def _screw(p, q, a, b):
+    """The constant screw from pose a to pose b.
+
+    Returns:
+        Half its turn; the speed of the origin in m for unit time; the axis (3); p_ab along the
+        axis, across it, and the latter turned by a right angle about the axis, (3) each.
+    """
+    a0, a1, a2, a3 = q[a, 0], q[a, 1], q[a, 2], q[a, 3]
+    b0, b1, b2, b3 = q[b, 0], q[b, 1], q[b, 2], q[b, 3]
+    w = a0 * b0 + a1 * b1 + a2 * b2 + a3 * b3
+    l0 = a0 * b1 - b0 * a1 - b2 * a3 + b3 * a2
+    l1 = a0 * b2 - b0 * a2 - b3 * a1 + b1 * a3
+    l2 = a0 * b3 - b0 * a3 - b1 * a2 + b2 * a1
+    sine = np.sqrt(l0 * l0 + l1 * l1 + l2 * l2)
+    half = np.arctan2(sine, abs(w))
+    if sine > 0.0:
+        scale = (-1.0 if w < 0.0 else 1.0) / sine
+        l0, l1, l2 = scale * l0, scale * l1, scale * l2
+    d0, d1, d2 = p[b, 0] - p[a, 0], p[b, 1] - p[a, 1], p[b, 2] - p[a, 2]
+    travel = d0 * l0 + d1 * l1 + d2 * l2
+    c0, c1, c2 = d0 - travel * l0, d1 - travel * l1, d2 - travel * l2
+    arc = np.sqrt(c0 * c0 + c1 * c1 + c2 * c2)
+    if half > 1e-9:
+        arc *= half / np.sin(half)
+    return (
+        half, np.sqrt(travel * travel + arc * arc), (l0, l1, l2),
+        (travel * l0, travel * l1, travel * l2), (c0, c1, c2),
+        (l1 * c2 - l2 * c1, l2 * c0 - l0 * c2, l0 * c1 - l1 * c0),
+    )  # fmt: skip
+
+
+@njit(cache=True)
+def _first_missed(p, q, P, Q, a, screw, order, start, stop, place, turn):
+    """The first of the poses order[start:stop] that the screw from pose a does not hold, or -1."""
+    half, speed, axis, along, across, turned = screw
+    sin_half = np.sin(half)
+    least_cosine = np.cos(0.5 * turn)
+    rate = max(speed / place, 2.0 * half / turn)
+    least_step = _LEAST_STEP / rate if rate > 0.0 else 2.0
+    a0, a1, a2, a3 = q[a, 0], q[a, 1], q[a, 2], q[a, 3]
+    # (0, axis) * q_a, towards which the quaternion turns
+    r0 = -(axis[0] * a1 + axis[1] * a2 + axis[2] * a3)
+    r1 = axis[0] * a0 + axis[1] * a3 - axis[2] * a2
+    r2 = axis[1] * a0 + axis[2] * a1 - axis[0] * a3
+    r3 = axis[2] * a0 + axis[0] * a2 - axis[1] * a1
+    s, sine, cosine, ratio = 0.0, 0.0, 1.0, 0.0
+    lag, lead = np.cos(half), -sin_half
+    for index in range(start, stop):
+        k = order[index]
+        at_start = a0 * Q[k, 0] + a1 * Q[k, 1] + a2 * Q[k, 2] + a3 * Q[k, 3]
+        onward = r0 * Q[k, 0] + r1 * Q[k, 1] + r2 * Q[k, 2] + r3 * Q[k, 3]
+        d0, d1, d2 = P[k, 0] - p[a, 0], P[k, 1] - p[a, 1], P[k, 2] - p[a, 2]
+        while True:
+            e0 = d0 - s * along[0] - ratio * (lag * across[0] + lead * turned[0])
+            e1 = d1 - s * along[1] - ratio * (lag * across[1] + lead * turned[1])
+            e2 = d2 - s * along[2] - ratio * (lag * across[2] + lead * turned[2])
+            away = np.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
+            off = abs(cosine * at_start + sine * onward)
+            if away <= place and off >= least_cosine:
+                break
+            if s >= 1.0 or (away > place and speed == 0.0) or (off < least_cosine and half == 0.0):
+                return k
+            step = least_step
+            if away > place:
+                step = max(step, (away - place) / speed)
+            if off < least_cosine:
+                step = max(step, (np.arccos(off) - 0.5 * turn) / half)
+            s = min(s + step, 1.0)
+            sine, cosine = np.sin(half * s), np.cos(half * s)
+            ratio = sine / sin_half if half > 1e-9 else s
+            lag = cosine * np.cos(half) + sine * sin_half
+            lead = sine * np.cos(half) - cosine * sin_half
+    return -1
