@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from drake_screw.demonstrations.fewest_screws import fewest_screws, nearest_screws
 from drake_screw.demonstrations.regions import Regions, regions_of_interest
-from drake_screw.demonstrations.screw_fit import fewest_screws, nearest_screws
 from drake_screw.demonstrations.smoothing import smoothed
 from drake_screw.screws import (
     inverse,
@@ -54,10 +54,10 @@ class FaithfulConfig:
 
     def __post_init__(self) -> None:
         closest = _RESERVE * (1.0 - SCATTER)
-        if not 0.0 < self.spacing <= closest * self.position_tolerance:
-            raise ValueError("spacing must be positive and below position_tolerance")
-        if not 0.0 < self.turn_spacing <= closest * self.rotation_tolerance:
-            raise ValueError("turn_spacing must be positive and below rotation_tolerance")
+        if not 0.0 < 2.0 * self.spacing <= closest * self.position_tolerance:
+            raise ValueError("spacing must be positive and below 0.44 of position_tolerance")
+        if not 0.0 < 2.0 * self.turn_spacing <= closest * self.rotation_tolerance:
+            raise ValueError("turn_spacing must be positive and below 0.44 of rotation_tolerance")
         if self.rotation_tolerance > 1.0:
             raise ValueError("rotation_tolerance must be at most 1 rad")
         if self.region_of_interest < 1.0:
@@ -161,11 +161,12 @@ def faithful_guiding_poses(
     from its first sample to its last. They are recorded poses, and the promise of
     `faithful_segments` is for the samples as recorded.
 
-    If times are given, a recording whose samples scatter about a smooth motion (by coarse rounding
-    or noise: half of them by more than `SCATTER` of a tolerance, 1 mm by default) does not get a
-    screw more for every sample that is thrown far off. It has as many screws as the smoothed
-    motion, through poses of the latter, and these keep as near to the samples as so many can: within
-    the tolerances, or by as little beyond as `fidelity` says.
+    A recording whose samples scatter about a smooth motion, by coarse rounding or noise, would get
+    a screw more for every sample that is thrown far off. If times are given, it does not, where
+    half of the samples of a visit are off by `SCATTER` of a tolerance (1 mm by default): if the
+    smoothed motion needs fewer screws, it has as many as that, through poses of the latter, and
+    these keep as near to the samples as so many can, within the tolerances or beyond. `fidelity`
+    tells which.
 
     Args:
         X_WE: (m, 4, 4) hand poses over time.
@@ -183,11 +184,11 @@ def faithful_guiding_poses(
     shown, cuts = [np.zeros((0, 4, 4))], [np.zeros(0, dtype=np.int64)]
     for visit in visits:
         X, Z = X_WE[visit.start : visit.stop], X_smoothed[visit.start : visit.stop]
+        found = faithful_segments(X, config)
         if scatters(X, Z, config):
-            found = _scattered_segments(X, Z, config)
-            X = Z
-        else:
-            found = faithful_segments(X, config)
+            fewer = _scattered_segments(X, Z, config)
+            if len(fewer) < len(found):
+                X, found = Z, fewer
         cuts.append(visit.start + found)
         shown.append(X[found])
     owner = np.repeat(
@@ -202,7 +203,7 @@ def thin(X_WE: Array, spacing: float, turn_spacing: float) -> NDArray[np.int64]:
     Args:
         X_WE: (m, 4, 4).
         spacing: m.
-        turn_spacing: rad; whichever of the two is reached first.
+        turn_spacing: rad; whichever of the two is reached first. Infinite for place alone.
 
     Returns:
         (c,) the first pose, each that differs, and the last pose; the first alone if none differs.
@@ -215,11 +216,12 @@ def thin(X_WE: Array, spacing: float, turn_spacing: float) -> NDArray[np.int64]:
 
 
 @njit(cache=True)
-def _thin(p, q, spacing, turn_spacing):
+def _thin(p: Array, q: Array, spacing: float, turn_spacing: float) -> NDArray[np.int64]:
+    least = np.cos(0.5 * turn_spacing) if turn_spacing < np.pi else -1.0
     kept = [0]
     for i in range(1, len(p)):
         k = kept[-1]
         cosine = abs((q[i] * q[k]).sum())
-        if ((p[i] - p[k]) ** 2).sum() >= spacing**2 or cosine <= np.cos(0.5 * turn_spacing):
+        if ((p[i] - p[k]) ** 2).sum() >= spacing**2 or cosine <= least:
             kept.append(i)
     return np.array(kept)

@@ -1,174 +1,59 @@
-"""The fewest constant screws that hold a path of poses within tolerances, in the order shown.
+"""Whether a constant screw between two poses of a path holds the samples between, in order.
 
-A screw leads from one pose of the path to another. It holds the poses between if each can be given
-a parameter s in [0, 1], never less than that of the pose before, at which the screw is within the
-position *and* the rotation tolerance of it. Giving each pose the least admissible s is enough to
+A screw leads from one pose of a path to another. It holds the samples between if each can be given
+a parameter s in [0, 1], never less than that of the sample before, at which the screw is within the
+position *and* the rotation tolerance of it. Giving each sample the least admissible s is enough to
 decide that: whatever other assignment there is, its parameters are nowhere smaller, so it leaves
-later poses no more to choose from.
+later samples no more to choose from.
 
 The least admissible s is found by stepping as far as the tolerances are missed. Along a constant
-screw the origin moves at one speed L and the frame turns at one speed theta, so a pose that is
+screw the origin moves at one speed L and the frame turns at one speed theta, so a sample that is
 missed by d metres stays missed for d / L, and one missed by a radians for a / theta. Steps have a
-least length of 1 % of the tolerances: a pose that a screw touches for less than that may count as
-missed. Nothing that counts as held is missed.
+least length of 1 % of the tolerances: s may be too late by that, and a sample that the screw
+touches for less may count as missed. What counts as held is held.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numba import njit
 
-from drake_screw.screws import quaternion_from_rotation
 from drake_screw.typing import Array
 
 LARGEST_TURN = 3.0  # rad; at pi a screw between two poses is no longer the only one
-_REFINEMENTS = 5  # halvings of the share of the tolerances at which as many screws still do
 _LEAST_STEP = 0.01
 
 
-def fewest_screws(
-    X_WE: Array,
-    candidates: Array,
-    position_tolerance: float,
-    rotation_tolerance: float,
-    *,
-    samples: Array | None = None,
-) -> Array:
-    """Where to cut a path so that the fewest constant screws hold all of its poses.
-
-    A breadth-first search over the candidates: those reached from the first by one screw, by two,
-    and so on. Of the ways with the fewest screws it takes one whose worst deviation, in proportion
-    to the tolerances, is least to within 1/32 of them. No screw turns by more than `LARGEST_TURN`,
-    unless it leads from a candidate to the very next.
-
-    Args:
-        X_WE: (m, 4, 4) a path.
-        candidates: (c,) increasing indices at which it may be cut, the first 0, the last m - 1. A
-            path always has an answer if the poses between two neighbours are within the tolerances
-            of one of them.
-        position_tolerance: m.
-        rotation_tolerance: rad, at most 1.
-        samples: (m, 4, 4) poses that are held in place of the path's own.
-
-    Returns:
-        (g,) indices, the first and the last pose among them; none if even the screws from each
-        candidate to the next do not hold the poses.
-    """
-    path = _Path.of(
-        X_WE,
-        X_WE if samples is None else samples,
-        np.asarray(candidates, dtype=np.int64),
-        (position_tolerance, rotation_tolerance),
-    )
-    count = len(path.candidates)
-    failed, anywhere = np.zeros((count, count)), np.full(count, -1)
-    screws, before = path.search(anywhere, failed, 1.0)
-    if screws[-1] < 0:
-        return path.candidates[:0]
-    # A candidate on a way with the fewest screws is reached by the fewest from both ends, whatever
-    # the tolerances: so there is one number of screws at which it is of use.
-    rank = np.where(screws >= 0, screws, count)
-    from_end = np.where(screws >= 0, screws[-1] - screws, count)[::-1]
-    to_end, _ = path.backwards().search(from_end, failed[::-1, ::-1].T.copy(), 1.0)
-    rank = np.where(to_end[::-1] >= 0, rank, count)
-    nearer = path.nearest(int(screws[-1]), rank, failed, 1.0)
-    return path.cuts(before) if nearer is None else nearer
-
-
-def nearest_screws(
-    X_WE: Array,
-    candidates: Array,
-    position_tolerance: float,
-    rotation_tolerance: float,
-    *,
-    most: int,
-    samples: Array,
-    widest: float = 3.0,
-) -> Array:
-    """Where to cut a path so that a number of constant screws stay as near to samples as they can.
-
-    Args:
-        X_WE, candidates, position_tolerance, rotation_tolerance, samples: as for `fewest_screws`.
-        most: screws.
-        widest: times the tolerances.
-
-    Returns:
-        (g,) indices, for the least share of the tolerances (to within `widest` / 32) at which at
-        most so many screws hold the samples; none if that takes more than `widest`.
-    """
-    tolerances = position_tolerance, rotation_tolerance
-    path = _Path.of(X_WE, samples, np.asarray(candidates, dtype=np.int64), tolerances)
-    count = len(path.candidates)
-    nearest = path.nearest(most, np.full(count, -1), np.zeros((count, count)), widest)
-    return path.candidates[:0] if nearest is None else nearest
-
-
-@dataclass(frozen=True)
-class _Path:
-    """What a search is about.
-
-    Attributes:
-        p, q: (m, 3) m and (m, 4), positions and quaternions between which screws lead.
-        P, Q: the same of the samples to be held.
-        candidates: (c,) where to cut.
-        tolerances: m and rad.
-    """
-
-    p: Array
-    q: Array
-    P: Array
-    Q: Array
-    candidates: Array
-    tolerances: tuple[float, float]
-
-    @classmethod
-    def of(
-        cls, X_WE: Array, samples: Array, candidates: Array, tolerances: tuple[float, float]
-    ) -> _Path:
-        p, P = (np.ascontiguousarray(X[:, :3, 3]) for X in (X_WE, samples))
-        q, Q = (quaternion_from_rotation(X[:, :3, :3]) for X in (X_WE, samples))
-        return cls(p, q, P, Q, candidates, tolerances)
-
-    def backwards(self) -> _Path:
-        p, q, P, Q = (np.ascontiguousarray(a[::-1]) for a in (self.p, self.q, self.P, self.Q))
-        return _Path(p, q, P, Q, len(p) - 1 - self.candidates[::-1], self.tolerances)
-
-    def cuts(self, before: Array) -> Array:
-        """The candidates on the way to the last one, each with the one before it."""
-        way = [len(self.candidates) - 1]
-        while way[-1] > 0:
-            way.append(int(before[way[-1]]))
-        return self.candidates[way[::-1]]
-
-    def nearest(self, most: int, rank: Array, failed: Array, widest: float) -> Array | None:
-        """Cuts for the least share of the tolerances, below `widest`, at which so many screws do."""
-        nearest, low, high = None, 0.0, widest
-        for _ in range(_REFINEMENTS):
-            middle = 0.5 * (low + high)
-            screws, before = self.search(rank, failed, middle)
-            if 0 <= screws[-1] <= most:
-                nearest, high = self.cuts(before), middle
-            else:
-                low = middle
-        return nearest
-
-    def search(self, rank: Array, failed: Array, share: float) -> tuple[Array, Array]:
-        """How many screws lead to each candidate, -1 if none do, and the candidate before.
-
-        Args:
-            rank: (c,) the only number of screws by which each may be reached; -1 for any.
-            failed: (c, c) share of the tolerances at which a screw is known not to hold; updated.
-            share: of the tolerances.
-        """
-        return _search(
-            self.p, self.q, self.P, self.Q, self.candidates, rank, failed, share, *self.tolerances
-        )
-
-
 @njit(cache=True)
-def _search(p, q, P, Q, candidates, rank, failed, share, position_tolerance, rotation_tolerance):
+def search(
+    p: Array,
+    q: Array,
+    P: Array,
+    Q: Array,
+    candidates: Array,
+    rank: Array,
+    failed: Array,
+    share: float,
+    position_tolerance: float,
+    rotation_tolerance: float,
+) -> tuple[Array, Array]:
+    """Breadth first: the candidates reached from the first by one screw, by two, and so on.
+
+    Args:
+        p, q: (m, 3) m and (m, 4), positions and quaternions between which screws lead.
+        P, Q: the same of the samples to be held, those at both ends of a screw among them.
+        candidates: (c,) increasing indices of poses between which screws may lead.
+        rank: (c,) the only number of screws by which each may be reached; -1 for any.
+        failed: (c, c) share of the tolerances at which a screw is known not to hold; updated.
+        share: of the tolerances.
+        position_tolerance, rotation_tolerance: m, rad.
+
+    Returns:
+        (c,) the least number of screws to each candidate, -1 where none was found before the last
+        one was reached; and (c,) the candidate before it on the way.
+    """
     count = len(candidates)
     place, turn = share * position_tolerance, share * rotation_tolerance
     screws, before, killer = np.full(count, -1), np.full(count, -1), np.full(count, -1)
@@ -209,7 +94,7 @@ def _search(p, q, P, Q, candidates, rank, failed, share, position_tolerance, rot
 
 
 @njit(cache=True)
-def _screw(p, q, a, b):
+def _screw(p: Array, q: Array, a: int, b: int) -> tuple[Any, ...]:
     """The constant screw from pose a to pose b.
 
     Returns:
@@ -241,7 +126,19 @@ def _screw(p, q, a, b):
 
 
 @njit(cache=True)
-def _first_missed(p, q, P, Q, a, screw, order, start, stop, place, turn):
+def _first_missed(
+    p: Array,
+    q: Array,
+    P: Array,
+    Q: Array,
+    a: int,
+    screw: tuple[Any, ...],
+    order: Array,
+    start: int,
+    stop: int,
+    place: float,
+    turn: float,
+) -> int:
     """The first of the poses order[start:stop] that the screw from pose a does not hold, or -1."""
     half, speed, axis, along, across, turned = screw
     sin_half = np.sin(half)

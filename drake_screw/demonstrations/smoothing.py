@@ -34,7 +34,7 @@ def smoothed(X_WE: Array, t: Array) -> Array:
 
 
 @njit(cache=True)
-def _parabolas(values, t, window):
+def _parabolas(values: Array, t: Array, window: float) -> Array:
     m, n = values.shape
     result = values.copy()
     start, stop = 0, 0
