@@ -52,8 +52,8 @@ def require_motion(
     """Refuse a demonstration that keeps no motion.
 
     It keeps some if the guiding poses of one visit differ by more than one of the tolerances, and
-    if there is `LEAST_SHARE` of the hand's travel or turn within `config.reach` of the objects of
-    the task between them.
+    if between them the hand travels or turns by more than that, and by more than `LEAST_SHARE` of
+    its travel or turn within `config.reach` of the objects of the task.
 
     Args:
         X_WE: (m, 4, 4) hand poses as recorded.
@@ -85,7 +85,9 @@ def require_motion(
     distance = translation_distance(X_WE[:, None], X_WO[None, regions.task]).min(axis=1)
     near = np.flatnonzero(distance <= max(config.reach, config.region_of_interest * distance.min()))
     shown_travel, shown_turn = _motion(np.split(X_WE[near], _gaps(near)), config)
-    if moves and (travel >= LEAST_SHARE * shown_travel or turned >= LEAST_SHARE * shown_turn):
+    travels = travel > max(LEAST_SHARE * shown_travel, config.position_tolerance)
+    turns = turned > max(LEAST_SHARE * shown_turn, config.rotation_tolerance)
+    if moves and (travels or turns):
         return
     index = int(np.argmin(np.where(regions.task, regions.smallest, np.inf)))
     smallest = regions.smallest[index]

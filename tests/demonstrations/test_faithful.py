@@ -18,6 +18,7 @@ from drake_screw.demonstrations.faithful import (
     faithful_segments,
     thin,
 )
+from drake_screw.demonstrations.fewest_screws import fewest_screws
 from drake_screw.demonstrations.fidelity import fidelity
 from drake_screw.robot import Arm
 from drake_screw.screws import (
@@ -193,6 +194,29 @@ def test_paths_of_known_screws(shown: tuple[int, np.ndarray], seed: int) -> None
     assert screws_of(path[::-1])[0] == found
     Y = exp(np.random.default_rng(seed).uniform(-2.0, 2.0, 6))
     assert screws_of(Y @ path)[0] == found
+
+
+@settings(deadline=None, max_examples=15)
+@given(known_screws(), st.integers(0, 2**32 - 1))
+def test_no_other_cuts_do_with_fewer_screws(shown: tuple[int, np.ndarray], seed: int) -> None:
+    """Every screw between candidates is tried, by the search that knows nothing of this one."""
+    _, path = shown
+    some = np.random.default_rng(seed).choice(len(path) - 2, min(8, len(path) - 2), replace=False)
+    candidates = np.array([0, *np.sort(some + 1), len(path) - 1])
+
+    def fewest(share: float) -> float:
+        screws = np.append(0.0, np.full(len(candidates) - 1, np.inf))
+        for j, b in enumerate(candidates):
+            for i, a in enumerate(candidates[:j]):
+                if rotation_angle(path[a], path[b]) <= 3.0 and held_in_order(
+                    path[a : b + 1], path[[a, b]], share * 0.010, share * 0.1
+                ):
+                    screws[j] = min(screws[j], screws[i] + 1.0)
+        return float(screws[-1])
+
+    cuts = fewest_screws(path, candidates, 0.010, 0.1)
+    found = len(cuts) - 1 if len(cuts) else np.inf
+    assert fewest(1.03) <= found <= fewest(0.97)
 
 
 # what must not be lost

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ DEFAULT = FaithfulConfig()
 def along(*points: Sequence[float], step: float = 0.001) -> np.ndarray:
     """A hand that goes straight from point to point."""
     parts = [np.array(points[:1], dtype=float)]
-    for a, b in zip(points[:-1], points[1:], strict=True):
+    for a, b in pairwise(points):
         count = max(1, round(float(np.linalg.norm(np.subtract(b, a))) / step))
         parts.append(np.linspace(a, b, count + 1)[1:])
     return pose(np.eye(3), np.concatenate(parts))
