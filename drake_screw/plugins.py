@@ -26,7 +26,9 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
         "eprocess": "drake_screw.bandits.eprocess:EProcess",
         "naive_pac": "drake_screw.bandits.naive_pac:NaivePac",
         "clopper_pearson": "drake_screw.bandits.clopper_pearson:ClopperPearson",
-        "successive_elimination": "drake_screw.bandits.successive_elimination:SuccessiveElimination",
+        "successive_elimination": (
+            "drake_screw.bandits.successive_elimination:SuccessiveElimination"
+        ),
         "lucb": "drake_screw.bandits.lucb:Lucb",
         "ucb": "drake_screw.bandits.ucb:Ucb",
         "median_elimination": "drake_screw.bandits.median_elimination:MedianElimination",

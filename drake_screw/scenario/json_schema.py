@@ -11,11 +11,11 @@ from functools import cache
 from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema
-from pydantic_core import CoreSchema
 from pydantic_core.core_schema import ModelSchema
 
 from drake_screw.scenario.block import Keys
 from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.values import Interval
 
 Schema = dict[str, Any]
 
@@ -54,7 +54,7 @@ def resolved(schema: Schema) -> Schema:
 
 def alternatives(schema: Schema) -> list[Schema]:
     """What a value may be, apart from nothing."""
-    choices = schema.get("anyOf", schema.get("oneOf", []))
+    choices: list[Schema] = schema.get("anyOf") or schema.get("oneOf") or []
     return [choice for choice in choices if choice.get("type") != "null"]
 
 
@@ -81,7 +81,7 @@ def describe(schema: Schema) -> str:
         return f"a list of {count}{_plural(_entries(schema)[0], 'mappings')}"
     if schema["type"] == "object":
         return f"a mapping from names to {_plural(schema['additionalProperties'], 'values')}"
-    return _IN_WORDS[schema.get("format", schema["type"])][0]
+    return _IN_WORDS[schema.get("format") or schema["type"]][0]
 
 
 def limits(schema: Schema) -> list[str]:
@@ -115,7 +115,7 @@ def _inside(schema: Schema, key: str | int) -> Schema:
 
 
 def _plural(schema: Schema, other: str) -> str:
-    kind = schema.get("format", schema.get("type"))
+    kind = schema.get("format") or schema.get("type", "")
     return _IN_WORDS[kind][1] if kind in _IN_WORDS else other
 
 
@@ -132,6 +132,9 @@ def _with_nothing(schema: Any) -> Any:
 
 class _Generator(GenerateJsonSchema):
     """Without the names that pydantic gives to keys and classes."""
+
+    def encode_default(self, dft: Any) -> Any:
+        return dft.written() if isinstance(dft, Interval) else super().encode_default(dft)
 
     def field_title_should_be_set(self, schema: Any) -> bool:
         return False

@@ -30,7 +30,7 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
     for detail in details:
         if detail["type"] == "extra_forbidden":
             *block, name = detail["loc"]
-            meant.add((*block, nearest(str(name), resolved(at(tuple(block))[0])["properties"])))
+            meant.add((*block, nearest(str(name), _valid(tuple(block)))))
     for detail in details:
         problem = _problem(detail, data)
         if not (detail["type"] == "missing" and problem.keys in meant):
@@ -41,19 +41,19 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
 def _problem(detail: ErrorDetails, data: Any) -> Problem:
     keys, value = _follow(detail["loc"], data)
     name = detail["loc"][-1] if detail["loc"] else ""
-    if detail["type"] == "missing" and isinstance(name, str):
-        keys = (*keys, name)
-    schema, meaning = at(keys)
     match detail["type"]:
         case "rule":
             words = detail["ctx"]
-            return Problem((*keys,), words["message"], words["remedy"])
-        case "extra_forbidden":
-            valid = resolved(at(keys[:-1])[0])["properties"]
-            where = f"Keys of {'.'.join(map(str, keys[:-1])) or 'a scenario'}"
-            return Problem(keys, "unknown key", suggestion(str(name), valid, where))
+            return Problem(detail["loc"], words["message"], words["remedy"])
         case "missing" if isinstance(name, str):
-            return Problem(keys, f"missing; expected {describe(schema)}", f"Meaning: {meaning}.")
+            schema, meaning = at(detail["loc"])
+            message = f"missing; expected {describe(schema)}"
+            return Problem(detail["loc"], message, f"Meaning: {meaning}.")
+        case "extra_forbidden":
+            where = f"Keys of {'.'.join(map(str, keys[:-1])) or 'a scenario'}"
+            return Problem(keys, "unknown key", suggestion(str(name), _valid(keys[:-1]), where))
+    schema, meaning = at(keys)
+    match detail["type"]:
         case "string_pattern_mismatch":
             return Problem(keys, f"expected the {meaning}; found '{value}'")
         case kind if kind in _BOUNDS:
@@ -61,6 +61,11 @@ def _problem(detail: ErrorDetails, data: Any) -> Problem:
             message = f"expected a number {bounds}, found {value}"
             return Problem(keys, message, f"Meaning: {meaning}.")
     return _mismatch(keys, schema, value)
+
+
+def _valid(block: Keys) -> list[str]:
+    """The keys of a block."""
+    return list(resolved(at(block)[0])["properties"])
 
 
 def _mismatch(keys: Keys, schema: Schema, value: Any) -> Problem:

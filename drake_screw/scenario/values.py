@@ -33,13 +33,17 @@ class Interval:
     def fixed(self) -> bool:
         return self.lower == self.upper
 
+    def written(self) -> float | tuple[float, float]:
+        """As in a file."""
+        return self.lower if self.fixed else (self.lower, self.upper)
+
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         ends = handler.generate_schema(tuple[float, float])
         return core_schema.no_info_before_validator_function(
             cls._ends,
             core_schema.no_info_after_validator_function(cls._between, ends),
-            serialization=core_schema.plain_serializer_function_ser_schema(cls._written),
+            serialization=core_schema.plain_serializer_function_ser_schema(cls.written),
         )
 
     @classmethod
@@ -63,9 +67,6 @@ class Interval:
                 "Write [lower, upper], or a single number for a fixed value.",
             )
         return cls(lower, upper)
-
-    def _written(self) -> float | list[float]:
-        return self.lower if self.fixed else [self.lower, self.upper]
 
 
 @dataclass(frozen=True)
