@@ -73,19 +73,19 @@ class Certificate:
     @property
     def statement(self) -> tuple[str, ...]:
         """The certificate in words, sentence by sentence."""
-        lines = () if self.certified else (_sentence(self.reason),)
         if self.claim is None:
-            return lines
-        held = f"confidence {self.confidence:g} for {self.confidence_holds_for}"
+            return (_sentence(self.reason),)
         if self.certified:
-            lines += (_sentence(self.claim),)
+            shown = [_sentence(self.claim)]
         else:
-            lines += (
+            held = f"confidence {self.confidence:g} for {self.confidence_holds_for}"
+            shown = [
+                _sentence(self.reason),
                 f"Shown so far: every region succeeds at least beta' = {self.coverage:.4f} of the "
                 f"time ({held}).",
                 f"Of the weakest region: {self.claim}.",
-            )
-        return (*lines, self._scope(), self._evidence())
+            ]
+        return (*shown, self._scope(), self._evidence())
 
     def _scope(self) -> str:
         touching = " that touches nothing"

@@ -16,13 +16,13 @@ from drake_screw.demonstrations import Recording, write_recording
 from drake_screw.errors import RunDirectoryError
 from drake_screw.files import fresh_folder, write_folder, write_text
 from drake_screw.runs.codec import json_text, read_run_record, save_evaluation
-from drake_screw.runs.csv_tables import regions_csv
 from drake_screw.runs.records import (
     DemonstrationRecord,
     RoundRecord,
     RunRecord,
     SuggestionRecord,
 )
+from drake_screw.runs.region_table import regions_csv
 
 RUN, SCENARIO, LOG = "run.json", "scenario.yaml", "run.log"
 INSTANCES, DEMONSTRATIONS = "instances.npz", "demonstrations"

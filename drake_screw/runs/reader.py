@@ -65,6 +65,10 @@ class RunReader:
         """How many rounds are finished."""
         return len(self.directory.record.rounds)
 
+    def all_rounds(self) -> list[RoundFinished]:
+        """All finished rounds."""
+        return [self.event(round) for round in range(self.rounds)]
+
     def refresh(self) -> bool:
         """Look for new rounds of a run that is still going on; returns whether there are any."""
         before = self.rounds

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -43,8 +43,9 @@ class VerdictRecord:
     @property
     def verdict(self) -> Verdict:
         """The verdict again."""
-        found = asdict(self)
-        return Verdict(**{k: np.array(v) if isinstance(v, tuple) else v for k, v in found.items()})
+        found: dict[str, Any] = asdict(self)
+        arrays = {name: np.array(v) for name, v in found.items() if isinstance(v, tuple)}
+        return Verdict(**found | arrays)
 
 
 @dataclass(frozen=True)

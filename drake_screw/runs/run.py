@@ -109,17 +109,6 @@ class Run:
             )
         yield from self.reader.events()
 
-    def draw(self) -> None:
-        """Draw the pictures of all rounds, and of the whole run, again."""
-        rounds = self._rounds()
-        for event in rounds:
-            stem = self.directory.round_folder(event.round) / "heat_map"
-            draw_round(self.setup, event, stem)
-        draw_run(self.setup, rounds, self.directory.path)
-
-    def _rounds(self) -> list[RoundFinished]:
-        return [self.reader.event(round) for round in range(self.reader.rounds)]
-
     def _check_parts(self) -> None:
         missing = set(self.directory.record.passed_in) - set(self.setup.passed_in)
         if missing:
@@ -137,7 +126,7 @@ class Run:
             if event.round >= self.reader.rounds:
                 self.directory.add_round(event, lambda e, stem: draw_round(self.setup, e, stem))
         elif isinstance(event, Finished):
-            draw_run(self.setup, self._rounds(), self.directory.path)
+            draw_run(self.setup, self.reader.all_rounds(), self.directory.path)
             rounds = self.directory.record.rounds
             self.directory.save(
                 status=event.status,
@@ -260,3 +249,12 @@ def resumable(run: Run) -> Run:
             file=run.directory.path,
         )
     return run
+
+
+def redraw(run: Run) -> None:
+    """Draw the pictures of all rounds, and of the whole run, again."""
+    rounds = run.reader.all_rounds()
+    for event in rounds:
+        stem = run.directory.round_folder(event.round) / "heat_map"
+        draw_round(run.setup, event, stem)
+    draw_run(run.setup, rounds, run.directory.path)

@@ -13,8 +13,8 @@ from drake_screw.bandits import Verdict, coverage_bound
 from drake_screw.bandits.mixture import confidence_interval
 from drake_screw.demonstrations import Demonstration
 from drake_screw.studies.experiment import Experiment, StudyRun, run_seed, split
-from drake_screw.tasks import GridRegions, draw
 from drake_screw.studies.figures import save_pocket
+from drake_screw.tasks import GridRegions, draw
 
 MOST_RUNS = 20
 EACH = 1024

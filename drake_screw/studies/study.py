@@ -21,14 +21,15 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.files import file_hash, fresh_folder, write_text
+from drake_screw.runs.directory import SCENARIO
 from drake_screw.scenario.loader import dump_scenario, load_scenario
-from drake_screw.studies.pockets import draw_pocket
-from drake_screw.runs.directory import SCENARIO, file_hash, write_text
 from drake_screw.scenario.schema import Scenario
-from drake_screw.studies.pool import results
 from drake_screw.studies.experiment import Experiment, StudyRun, split
-from drake_screw.studies.table import HEADER, csv_text, read_runs, row
 from drake_screw.studies.figures import Distribution, save_distributions
+from drake_screw.studies.pockets import draw_pocket
+from drake_screw.studies.pool import results
+from drake_screw.studies.table import HEADER, csv_text, read_runs, row
 
 FORMAT = 1
 STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"
@@ -161,7 +162,7 @@ def new_study(
     for part in (setup.strategy, setup.teacher, setup.initial):
         assert part is not None
     model = setup.workcell.model_file
-    path = output or _fresh(Path("studies") / scenario.name)
+    path = output or fresh_folder(Path("studies") / scenario.name)
     record = {
         "format": FORMAT,
         "scenario": scenario.name,
@@ -263,15 +264,6 @@ def _summary_csv(summary: dict[int, Distribution]) -> str:
             for number, count in found.counts.items()
         ]
     return csv_text(rows)
-
-
-def _fresh(parent: Path) -> Path:
-    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-    path, count = parent / stamp, 1
-    while path.exists():
-        count += 1
-        path = parent / f"{stamp}_{count}"
-    return path
 
 
 def _now() -> str:

@@ -17,7 +17,6 @@ from drake_screw.studies.figures import (
     save_pocket,
 )
 from drake_screw.tasks import WorkArea, grid_regions
-
 from tests.visualization.conftest import BOWL
 
 FOUND = Distribution((3, 3, 2, 5, 3, 2), without=2)

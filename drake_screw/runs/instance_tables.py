@@ -1,4 +1,4 @@
-"""Tables of a run: of its regions; of task instances in, of their outcomes out."""
+"""Tables of task instances in, tables of outcomes out."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from drake_screw.bandits import Verdict
 from drake_screw.errors import ScenarioError, nearest
 from drake_screw.files import csv_text
 from drake_screw.planning import Outcomes
-from drake_screw.tasks import AXES, Regions, WorkArea
+from drake_screw.tasks import AXES, WorkArea
 from drake_screw.typing import Array
 
 
@@ -96,25 +95,3 @@ def outcomes_csv(x_y_yaw: Array, outcomes: Outcomes, names: list[str], area: Wor
             cells.append([f"{v:.9g}" for v in values.tolist()])
     cells += outcomes.codes().T.tolist()
     return csv_text([[*header, *names], *zip(*cells, strict=True)])
-
-
-def regions_csv(verdict: Verdict, regions: Regions) -> str:
-    """A row for each region of a round: its range in m and rad, counts, confidence bounds."""
-    axes = [f"{o.name}_{axis}" for o in regions.area.objects for axis in AXES]
-    ends = [f"{axis}_{end}" for axis in axes for end in ("min", "max")]
-    rows: list[list[object]] = [
-        ["region", *ends, "samples", "failures", "failure_rate", "lower", "upper"]
-    ]
-    rates = np.stack([verdict.estimates, verdict.lower, verdict.upper], axis=1)
-    for j in range(regions.K):
-        corners = np.stack(regions.bounds(j), axis=-1)
-        rows.append(
-            [
-                j,
-                *(f"{v:.6g}" for v in corners.ravel()),
-                verdict.samples[j],
-                verdict.failures[j],
-                *(f"{v:.6g}" for v in rates[j]),
-            ]
-        )
-    return csv_text(rows)
