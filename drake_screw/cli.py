@@ -169,7 +169,7 @@ def run(
             console.print(f"interrupted; carry on with: {command}", soft_wrap=True)
             raise typer.Exit(130) from None
         assert isinstance(finished, Finished)
-        show_certificate(job, finished, console)
+        show_certificate(job, console)
         if pages.live is not None and console.is_terminal:
             with suppress(EOFError, KeyboardInterrupt):
                 console.input("the page stays until you press Enter ")
@@ -216,19 +216,16 @@ def report(
     run: RunArgument,
 ) -> None:
     """Tell a finished run again, and draw its pictures anew."""
-    from drake_screw.acquisition import Finished
     from drake_screw.commands.console import show_certificate, show_event
-    from drake_screw.runs.inspection import Inspection
     from drake_screw.runs.run import open_run, redraw
     from drake_screw.web.report_page import write_report
 
     job, console = open_run(run), Console()
     for event in list(job.replay()):
         show_event(event, job.setup.regions, console)
-        if isinstance(event, Finished):
-            show_certificate(job, event, console)
+    show_certificate(job, console)
     redraw(job)
-    console.print(f"written: {write_report(Inspection(job))}", soft_wrap=True)
+    console.print(f"written: {write_report(job.reader)}", soft_wrap=True)
 
 
 @app.command(epilog="Example:  drake-screw study pouring --regions 1,4,16 --runs 200")

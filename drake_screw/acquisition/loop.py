@@ -70,7 +70,7 @@ def acquire(
     hand = _InHand((), ())
     if isinstance(initial, int):
         for number in range(initial):
-            place = random_suggestion(regions, _rng(seed, number, _PLACE))
+            place = initial_place(regions, seed, number)
             added, remark = yield from _ask(teacher, learn, hand, 0, (place,), seed)
             if added is None:
                 yield _finished(f"no initial demonstration: {remark}", None, hand)
@@ -111,6 +111,11 @@ def acquire(
             yield _finished(remark, verdict, hand)
             return
         hand = added
+
+
+def initial_place(regions: Regions, seed: int, number: int) -> Suggestion:
+    """Where initial demonstration `number`, from 0, is asked for."""
+    return random_suggestion(regions, _rng(seed, number, _PLACE))
 
 
 def _ask(

@@ -17,10 +17,8 @@ from drake_screw.acquisition import (
     RegionsEvaluated,
     RoundFinished,
     RoundStarted,
-    Status,
 )
 from drake_screw.bandits import Verdict
-from drake_screw.runs.certificate import certificate, statement
 from drake_screw.runs.narration import describe
 from drake_screw.runs.run import Run
 from drake_screw.tasks import Regions
@@ -76,15 +74,15 @@ def show_event(event: Event, regions: Regions, console: Console) -> None:
         console.print(round_table(event.verdict, event.regions))
 
 
-def show_certificate(run: Run, finished: Finished, console: Console) -> None:
+def show_certificate(run: Run, console: Console) -> None:
     """The statement a finished run makes, and where to find the rest."""
-    stated = certificate(run.setup, finished, run.directory.record["rounds"])
-    certified = finished.status is Status.CERTIFIED
+    stated = run.certificate
+    assert stated is not None
     console.print(
         Panel(
-            Text("\n".join(statement(stated, finished.reason))),
-            title="certificate" if certified else "no certificate",
-            border_style="green" if certified else "yellow",
+            Text("\n".join(stated.statement)),
+            title="certificate" if stated.certified else "no certificate",
+            border_style="green" if stated.certified else "yellow",
             title_align="left",
         )
     )

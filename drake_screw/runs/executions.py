@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +13,9 @@ from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.batch import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, summary, trials_csv
+from drake_screw.files import fresh_folder, write_folder
 from drake_screw.planning import Cause, Outcomes, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
-from drake_screw.runs.directory import write_folder
 from drake_screw.runs.run import Run, open_run
 from drake_screw.tasks import draw
 from drake_screw.typing import Array
@@ -102,7 +101,7 @@ def execute(
                 page = recording_html(shown, setup.robot, table=setup.table, objects=setup.objects)
             (folder / "executions.html").write_text(page)
 
-    folder = _new_folder(opened.directory.path / "executions")
+    folder = fresh_folder(opened.directory.path / "executions")
     try:
         write_folder(folder, fill)
     except OSError as error:
@@ -146,14 +145,14 @@ def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
         RunDirectoryError: it has none.
         RecordingError: one cannot be read.
     """
-    entries = run.directory.record["demonstrations"]
-    if not entries:
+    count = len(run.directory.record.demonstrations)
+    if count == 0:
         raise RunDirectoryError(
             "this run has no demonstrations yet",
             remedy=f"Carry it on first: drake-screw run --resume {run.directory.path}",
             file=run.directory.path,
         )
-    return tuple(run.setup.learn(run.stored(number)[0]) for number in range(len(entries)))
+    return run.reader.demonstrations(count)
 
 
 def placed(setup: Setup, numbers: Sequence[float]) -> Array:
@@ -164,17 +163,16 @@ def placed(setup: Setup, numbers: Sequence[float]) -> Array:
     Raises:
         ScenarioError: the wrong number of numbers.
     """
-    area = setup.area
-    k, names = len(area.objects), ", ".join(o.name for o in area.objects)
-    if len(numbers) not in (2 * k, 3 * k) or not np.isfinite(numbers).all():
+    objects = setup.area.objects
+    try:
+        instance = np.reshape(np.asarray(numbers, dtype=float), (1, len(objects), -1))
+        return setup.area.complete(instance)[0]
+    except ValueError as error:
         raise ScenarioError(
             f"an instance of {len(numbers)} numbers: {' '.join(f'{v:g}' for v in numbers)}",
-            remedy=f"Give x and y in m, and perhaps yaw in rad, of each of: {names}.",
-        )
-    x_y_yaw = area.lower.copy()
-    given = np.asarray(numbers, dtype=float).reshape(k, -1)
-    x_y_yaw[:, : given.shape[1]] = given
-    return x_y_yaw
+            remedy="Give x and y in m, and perhaps yaw in rad, of each of: "
+            f"{', '.join(o.name for o in objects)}.",
+        ) from error
 
 
 def collision_free_planner(setup: Setup) -> CollisionFreePlanner:
@@ -262,12 +260,3 @@ def _chosen(trials: Sequence[Trial]) -> list[Trial]:
     worst = sorted(executed, key=badness, reverse=True)[: SHOWN // 2]
     rest = [trial for trial in executed if trial not in worst]
     return worst + rest[:: max(1, -(-len(rest) // (SHOWN - len(worst))))]
-
-
-def _new_folder(parent: Path) -> Path:
-    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-    folder, count = parent / stamp, 1
-    while folder.exists():
-        count += 1
-        folder = parent / f"{stamp}_{count}"
-    return folder

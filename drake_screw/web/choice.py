@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from drake_screw.runs.inspection import Inspection
+from drake_screw.runs.reader import RunReader
 
 
 @dataclass(frozen=True)
@@ -18,44 +18,44 @@ class Choice:
     demonstration: int | None
 
 
-def choose(inspection: Inspection, round: int, instance: int | None = None) -> Choice:
+def choose(reader: RunReader, round: int, instance: int | None = None) -> Choice:
     """A round and an instance of it (a row of its instances, or None: where to begin)."""
-    instance = inspection.check_instance(round, instance)
-    best = None if instance is None else inspection.best(round, instance)
+    instance = reader.check_instance(round, instance)
+    best = None if instance is None else reader.best(round, instance)
     return Choice(round, None, instance, best)
 
 
-def changed(inspection: Inspection, choice: Choice, message: dict[str, Any]) -> Choice:
+def changed(reader: RunReader, choice: Choice, message: dict[str, Any]) -> Choice:
     """What is looked at after a message of the panel; nonsense changes nothing.
 
     Messages: ``{"round": r}``, ``{"region": j or null}``, ``{"step": "next"}`` (previous, earliest,
     suggested), ``{"at": [x, y]}`` (the nearest instance), ``{"demonstration": d}``.
     """
     match message:
-        case {"round": int(round)} if 0 <= round < inspection.rounds:
-            return choose(inspection, round)
+        case {"round": int(round)} if 0 <= round < reader.rounds:
+            return choose(reader, round)
         case {"region": int() | None as region}:
-            listed = inspection.catalogue(choice.round).of_region(region)
+            listed = reader.catalogue(choice.round).of_region(region)
             if len(listed) == 0:
                 return choice
             moved = Choice(choice.round, region, choice.instance, choice.demonstration)
-            return _at(inspection, moved, int(listed[0]))
-        case {"step": str(step)} if step in steps(inspection, choice):
-            return _at(inspection, choice, steps(inspection, choice)[step])
+            return _at(reader, moved, int(listed[0]))
+        case {"step": str(step)} if step in steps(reader, choice):
+            return _at(reader, choice, steps(reader, choice)[step])
         case {"at": [int() | float() as x, int() | float() as y]}:
-            book = inspection.catalogue(choice.round)
+            book = reader.catalogue(choice.round)
             place = book.nearest_to(float(x), float(y))
             free = Choice(choice.round, None, choice.instance, choice.demonstration)
-            return choice if place is None else _at(inspection, free, place)
+            return choice if place is None else _at(reader, free, place)
         case {"demonstration": int(number)} if choice.instance is not None:
-            if 0 <= number < len(inspection.event(choice.round).demonstrations):
+            if 0 <= number < len(reader.event(choice.round).demonstrations):
                 return Choice(choice.round, choice.region, choice.instance, number)
     return choice
 
 
-def steps(inspection: Inspection, choice: Choice) -> dict[str, int]:
+def steps(reader: RunReader, choice: Choice) -> dict[str, int]:
     """Where each of the panel's buttons leads, as places in the round's catalogue."""
-    book = inspection.catalogue(choice.round)
+    book = reader.catalogue(choice.round)
     listed = book.of_region(choice.region)
     found: dict[str, int] = {}
     here = None if choice.instance is None else book.find(choice.instance)
@@ -73,11 +73,11 @@ def steps(inspection: Inspection, choice: Choice) -> dict[str, int]:
     return found
 
 
-def which(inspection: Inspection, choice: Choice) -> str:
+def which(reader: RunReader, choice: Choice) -> str:
     """An instance's number, its region, and its place among those that fail."""
     assert choice.instance is not None
-    book = inspection.catalogue(choice.round)
-    event = inspection.event(choice.round)
+    book = reader.catalogue(choice.round)
+    event = reader.event(choice.round)
     region = int(event.evaluation.region[choice.instance])
     words = f"instance {choice.instance:,} of {len(event.evaluation.x_y_yaw):,}, region {region}"
     place = book.find(choice.instance)
@@ -93,7 +93,7 @@ def which(inspection: Inspection, choice: Choice) -> str:
     return words
 
 
-def _at(inspection: Inspection, choice: Choice, place: int) -> Choice:
-    instance = int(inspection.catalogue(choice.round).instance[place])
-    best = inspection.best(choice.round, instance)
+def _at(reader: RunReader, choice: Choice, place: int) -> Choice:
+    instance = int(reader.catalogue(choice.round).instance[place])
+    best = reader.best(choice.round, instance)
     return Choice(choice.round, choice.region, instance, best)

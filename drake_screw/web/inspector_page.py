@@ -10,7 +10,8 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.runs.inspection import Inspection, open_inspection
+from drake_screw.runs.reader import RunReader
+from drake_screw.runs.run import open_run
 from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.lifetime import page_meshcat, scratch
 from drake_screw.visualization.palette import OUTCOME_NAMES
@@ -53,18 +54,18 @@ def inspect(
         RunDirectoryError: the directory is damaged, of another version, or has no round yet.
         ScenarioError: there is no such round or instance.
     """
-    inspection = open_inspection(run)
-    choice = choose(inspection, inspection.check_round(round), instance)
+    reader = open_run(run).reader
+    choice = choose(reader, reader.check_round(round), instance)
     if html is None:
-        serve(inspection, choice, console, host=host, port=port)
+        serve(reader, choice, console, host=host, port=port)
     else:
-        tell_instance(inspection, choice, console)
-        page = save_page(inspection, choice, html)
+        tell_instance(reader, choice, console)
+        page = save_page(reader, choice, html)
         console.print(f"written: {page}, its numbers beside it (.csv, .json)", soft_wrap=True)
 
 
 def serve(
-    inspection: Inspection,
+    reader: RunReader,
     choice: Choice,
     console: Console,
     *,
@@ -74,16 +75,16 @@ def serve(
     """Show a run in the browser until interrupted.
 
     Args:
-        inspection: the run.
+        reader: of the run.
         choice: what to show first.
         console: told where to look, with the first instance's table, and which ones follow.
         host: "localhost", or an address to listen on, so that others can look, too.
         port: of the page; any free one if None.
     """
     check_address(host, port)
-    stage = Stage(inspection, page_meshcat(host))
+    stage = Stage(reader, page_meshcat(host))
     page = inspector_body(None)
-    name = inspection.setup.scenario.name
+    name = reader.setup.scenario.name
     server = PanelServer(stage.meshcat.port(), page, f"{name}: inspect", host=host, port=port)
     risk = warning(host)
     if risk is not None:
@@ -91,24 +92,24 @@ def serve(
     console.print(f"open {server.url} in a browser; Ctrl-C ends it", soft_wrap=True)
     try:
         server.show(stage.show(choice, live=True))
-        tell_instance(inspection, choice, console)
+        tell_instance(reader, choice, console)
         while True:
             message = server.message(POLL)
             if message is None:
-                if inspection.refresh():
+                if reader.refresh():
                     server.show(stage.show(choice, live=True))
                 continue
-            before, choice = choice, changed(inspection, choice, message)
+            before, choice = choice, changed(reader, choice, message)
             server.show(stage.show(choice, live=True))
             if (before.round, before.instance) != (choice.round, choice.instance):
-                _tell(inspection, choice, console)
+                _tell(reader, choice, console)
     except KeyboardInterrupt:
         console.print("ended")
     finally:
         server.close()
 
 
-def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
+def save_page(reader: RunReader, choice: Choice, file: Path) -> Path:
     """Write one instance with all its demonstrations as a page that needs no network.
 
     Beside it, with the same name, are its numbers as .json and the plans as .csv.
@@ -123,7 +124,7 @@ def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
             file=file,
         )
     with scratch():
-        page = _page(inspection, choice)
+        page = _page(reader, choice)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(page, encoding="utf-8")
@@ -132,18 +133,18 @@ def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
             f"cannot be written: {error.strerror}", remedy="Give another --html.", file=file
         ) from error
     if choice.instance is not None:
-        attempts = inspection.attempts(choice.round, choice.instance)
+        attempts = reader.attempts(choice.round, choice.instance)
         file.with_suffix(".csv").write_text(attempts_csv(attempts))
         facts = {"round": choice.round + 1, "instance": choice.instance}
-        text = attempts_json(attempts, facts, inspection.setup.area)
+        text = attempts_json(attempts, facts, reader.setup.area)
         file.with_suffix(".json").write_text(text)
     return file
 
 
-def _page(inspection: Inspection, choice: Choice) -> str:
-    stage = Stage(inspection, Meshcat(MeshcatParams(host="localhost", show_stats_plot=False)))
+def _page(reader: RunReader, choice: Choice) -> str:
+    stage = Stage(reader, Meshcat(MeshcatParams(host="localhost", show_stats_plot=False)))
     drawn = stage.show(choice, live=False)
-    title = f"{inspection.setup.scenario.name}, round {choice.round + 1}"
+    title = f"{reader.setup.scenario.name}, round {choice.round + 1}"
     return with_panel(stage.meshcat.StaticHtml(), inspector_body(drawn), title)
 
 
@@ -168,23 +169,23 @@ def instance_table(attempts: list[Attempt]) -> Table:
     return table
 
 
-def tell_instance(inspection: Inspection, choice: Choice, console: Console) -> None:
+def tell_instance(reader: RunReader, choice: Choice, console: Console) -> None:
     """An instance and all its attempts in words and as a table."""
     if choice.instance is None:
         console.print("this round has no instances")
         return
-    attempts = inspection.attempts(choice.round, choice.instance)
-    _tell(inspection, choice, console)
+    attempts = reader.attempts(choice.round, choice.instance)
+    _tell(reader, choice, console)
     console.print(instance_table(attempts))
     for tried in attempts:
         text = f"demonstration {tried.number + 1} {headline(tried)}"
         console.print(Text(text), soft_wrap=True)
 
 
-def _tell(inspection: Inspection, choice: Choice, console: Console) -> None:
+def _tell(reader: RunReader, choice: Choice, console: Console) -> None:
     if choice.instance is not None:
-        x_y_yaw = inspection.event(choice.round).evaluation.x_y_yaw[choice.instance]
-        place = where(inspection.setup.area, x_y_yaw)
+        x_y_yaw = reader.event(choice.round).evaluation.x_y_yaw[choice.instance]
+        place = where(reader.setup.area, x_y_yaw)
         console.print(
             Text(f"round {choice.round + 1}, instance {choice.instance}: {place}"), soft_wrap=True
         )

@@ -16,8 +16,8 @@ from drake_screw.demonstrations import Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
 from drake_screw.planning import ReferencePlanner
-from drake_screw.runs.inspection import STEP
 from drake_screw.runs.narration import place
+from drake_screw.runs.reader import STEP
 from drake_screw.screws import exp, log, pose
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import Attempt, attempt, describe_segment, headline, unit

@@ -10,8 +10,7 @@ import numpy as np
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.planning import Cause
-from drake_screw.runs.certificate import statement
-from drake_screw.runs.inspection import Inspection
+from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES
@@ -30,60 +29,60 @@ OTHERS = 2
 """Instances of other regions that are pictured for each round."""
 
 
-def write_report(inspection: Inspection, folder: Path | None = None) -> Path:
+def write_report(reader: RunReader, folder: Path | None = None) -> Path:
     """Write report.html, and a 3-D page for an instance of each round into the folder inspect.
 
     Args:
-        inspection: the run.
+        reader: of the run.
         folder: where to; the run directory if None.
 
     Returns:
         The report.
     """
-    folder = inspection.run.directory.path if folder is None else folder
+    folder = reader.directory.path if folder is None else folder
     folder.mkdir(parents=True, exist_ok=True)
-    linkage = Linkage(inspection.setup.workcell)
+    linkage = Linkage(reader.setup.workcell)
     sections = []
-    for round in range(inspection.rounds):
-        choice = choose(inspection, round)
+    for round in range(reader.rounds):
+        choice = choose(reader, round)
         page = f"{PAGES}/round_{round + 1:02d}.html"
-        save_page(inspection, choice, folder / page)
-        sections.append(_round(inspection, choice, linkage, page))
-    name = escape(inspection.setup.scenario.name)
+        save_page(reader, choice, folder / page)
+        sections.append(_round(reader, choice, linkage, page))
+    name = escape(reader.setup.scenario.name)
     text = (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         f'<meta name="viewport" content="width=device-width"><title>{name}: report</title>'
         f"<style>{web('report.css')}</style></head><body>\n"
-        f"{_head(inspection)}\n{''.join(sections)}\n{_demonstrations(inspection)}</body></html>\n"
+        f"{_head(reader)}\n{''.join(sections)}\n{_demonstrations(reader)}</body></html>\n"
     )
     file = folder / "report.html"
     file.write_text(text, encoding="utf-8")
     return file
 
 
-def _head(inspection: Inspection) -> str:
+def _head(reader: RunReader) -> str:
     """Scenario, certificate, facts, and the course of the run."""
-    record, scenario = inspection.run.directory.record, inspection.setup.scenario
-    stated = record["certificate"] or {}
-    certified = bool(stated.get("certified"))
+    record, scenario = reader.directory.record, reader.setup.scenario
+    stated = record.certificate
+    certified = stated is not None and stated.certified
     color = OUTCOME_COLORS[Cause.SUCCESS if certified else Cause.JOINT_LIMIT]
-    title = "Certificate" if certified else f"No certificate: {record['status']}"
-    lines = statement(stated, str(record["reason"])) if stated else []
+    title = "Certificate" if certified else f"No certificate: {record.status}"
+    lines = () if stated is None else stated.statement
     words = "".join(f"<br>{escape(line)}" for line in lines)
     block = scenario.coverage
     facts = [
         ("goal", f"every region succeeds at least {block.beta:g} of the time"),
         ("accuracy, confidence", f"{block.epsilon:g}, {1 - block.delta:g}"),
         ("strategy", block.strategy),
-        ("demonstrations", str(len(record["demonstrations"]))),
-        ("rounds", str(inspection.rounds)),
-        ("seed", str(record["seed"])),
-        ("started", str(record.get("started", "unknown"))),
-        ("finished", str(record.get("finished") or "not yet")),
-        ("versions", ", ".join(f"{k} {v}" for k, v in record.get("versions", {}).items())),
+        ("demonstrations", str(len(record.demonstrations))),
+        ("rounds", str(reader.rounds)),
+        ("seed", str(record.seed)),
+        ("started", record.started),
+        ("finished", record.finished or "not yet"),
+        ("versions", ", ".join(f"{k} {v}" for k, v in record.versions.items())),
     ]
     rows = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in facts)
-    picture = _picture(inspection.run.directory.path / "rounds.png", "all rounds of the run")
+    picture = _picture(reader.directory.path / "rounds.png", "all rounds of the run")
     return (
         f'<h1>{escape(scenario.name)}</h1><p class="quiet">{escape(scenario.description)}</p>'
         f'<div class="verdict" style="border-color: {color}"><b>{escape(title)}</b>{words}</div>'
@@ -91,15 +90,15 @@ def _head(inspection: Inspection) -> str:
     )
 
 
-def _round(inspection: Inspection, choice: Choice, linkage: Linkage, page: str) -> str:
+def _round(reader: RunReader, choice: Choice, linkage: Linkage, page: str) -> str:
     """One round: its heat map, its worst regions, and one instance of it looked at closely."""
-    event = inspection.event(choice.round)
-    folder = inspection.run.directory.round_folder(choice.round)
+    event = reader.event(choice.round)
+    folder = reader.directory.round_folder(choice.round)
     return (
         f'<section id="round-{choice.round + 1}"><h2>{escape(round_headline(event)).capitalize()}'
         f"</h2><p>{escape(details(event, event.regions))}</p>"
         f"{_picture(folder / 'heat_map.png', 'heat map of the round')}{_regions(event)}"
-        f"{_instance(inspection, choice, linkage, page)}{_others(inspection, choice, linkage)}"
+        f"{_instance(reader, choice, linkage, page)}{_others(reader, choice, linkage)}"
         "</section>\n"
     )
 
@@ -122,18 +121,18 @@ def _regions(event: RoundFinished) -> str:
     )
 
 
-def _instance(inspection: Inspection, choice: Choice, linkage: Linkage, page: str) -> str:
+def _instance(reader: RunReader, choice: Choice, linkage: Linkage, page: str) -> str:
     """The suggested instance, or the earliest failing: all attempts, the best of them drawn."""
     if choice.instance is None or choice.demonstration is None:
         return ""
-    setup, event = inspection.setup, inspection.event(choice.round)
-    book = inspection.catalogue(choice.round)
+    setup, event = reader.setup, reader.event(choice.round)
+    book = reader.catalogue(choice.round)
     place = book.find(choice.instance)
     kind = "The suggested place for the next demonstration"
     if place is None or place != book.suggested():
         failing = place is not None and place < book.failing
         kind = "The instance that fails earliest" if failing else "An instance that succeeds"
-    attempts = inspection.attempts(choice.round, choice.instance)
+    attempts = reader.attempts(choice.round, choice.instance)
     best = attempts[choice.demonstration]
     x_y_yaw = event.evaluation.x_y_yaw[choice.instance]
     sketch = arm_sketch(best, linkage, setup.area, setup.objects, setup.table)
@@ -148,10 +147,10 @@ def _instance(inspection: Inspection, choice: Choice, linkage: Linkage, page: st
     )
 
 
-def _others(inspection: Inspection, choice: Choice, linkage: Linkage) -> str:
+def _others(reader: RunReader, choice: Choice, linkage: Linkage) -> str:
     """The earliest failing instance of each of the worst regions but the chosen one's, pictured."""
-    setup, event = inspection.setup, inspection.event(choice.round)
-    book, verdict = inspection.catalogue(choice.round), event.verdict
+    setup, event = reader.setup, reader.event(choice.round)
+    book, verdict = reader.catalogue(choice.round), event.verdict
     here = None if choice.instance is None else event.evaluation.region[choice.instance]
     order = np.argsort(-np.nan_to_num(verdict.estimates, nan=-1.0), kind="stable").tolist()
     parts = []
@@ -160,10 +159,10 @@ def _others(inspection: Inspection, choice: Choice, linkage: Linkage) -> str:
         if region == here or len(failing) == 0 or failing[0] >= book.failing:
             continue
         instance = int(book.instance[failing[0]])
-        best = inspection.best(choice.round, instance)
+        best = reader.best(choice.round, instance)
         if best is None:
             continue
-        tried = inspection.attempt(choice.round, instance, best)
+        tried = reader.attempt(choice.round, instance, best)
         place = where(setup.area, event.evaluation.x_y_yaw[instance])
         sketch = arm_sketch(tried, linkage, setup.area, setup.objects, setup.table)
         parts.append(
@@ -186,11 +185,11 @@ def _attempt(tried: Attempt) -> str:
     )
 
 
-def _demonstrations(inspection: Inspection) -> str:
+def _demonstrations(reader: RunReader) -> str:
     rows = "".join(
-        f'<tr><td class="number">{number}</td><td>{escape(entry["name"])}</td>'
-        f"<td>{escape(entry['remark'])}</td><td>{escape('; '.join(entry['notes']))}</td></tr>"
-        for number, entry in enumerate(inspection.run.directory.record["demonstrations"], start=1)
+        f'<tr><td class="number">{number}</td><td>{escape(entry.name)}</td>'
+        f"<td>{escape(entry.remark)}</td><td>{escape('; '.join(entry.notes))}</td></tr>"
+        for number, entry in enumerate(reader.directory.record.demonstrations, start=1)
     )
     return (
         '<section><h2>Demonstrations</h2><table><tr><th class="number"></th><th>name</th>'

@@ -59,7 +59,7 @@ def test_an_interrupted_run_resumes_to_the_same_result(whole, tmp_path) -> None:
     events = new_run(load_scenario("pouring", ADAPTIVE), tmp_path / "parts").events()
     next(event for event in events if isinstance(event, RoundFinished))
     events.close()
-    assert RunDirectory.open(tmp_path / "parts").record["status"] == "interrupted"
+    assert RunDirectory.open(tmp_path / "parts").record.status == "interrupted"
     again = rounds(open_run(tmp_path / "parts").events())
     assert len(again) == len(told)
     for one, other in zip(told, again, strict=True):

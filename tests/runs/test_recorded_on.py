@@ -30,7 +30,6 @@ from drake_screw.errors import (
 )
 from drake_screw.resources import find_resource
 from drake_screw.runs.executions import execute, known_demonstrations
-from drake_screw.runs.inspection import open_inspection
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.scenario.loader import dump_scenario, load_scenario
 
@@ -161,9 +160,9 @@ def test_the_run_directory_keeps_the_recordings_of_the_other_robot(
         recording = read(library / demonstration.name, baxter)
         expected = demonstration_from_recording(recording, baxter.workcell.arm)
         np.testing.assert_array_equal(demonstration.X_OE, expected.X_OE)
-    inspection = open_inspection(finished)
-    tried = inspection.attempts(0, 0)[0]
-    found = inspection.outcomes(0, 0)
+    reader = open_run(finished).reader
+    tried = reader.attempts(0, 0)[0]
+    found = reader.outcomes(0, 0)
     assert tried.arm.joint_names == tuple(IIWA)
     assert (tried.failed_segment is None) == bool(found.success[0])
 
