@@ -33,9 +33,10 @@ def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> Non
     scene.save_html(folder / "meshcat.html")
 
 
-def make_scene(setup: Setup) -> Scene:
-    """A Meshcat scene of a scenario, served on localhost only."""
-    meshcat = Meshcat(MeshcatParams(host="localhost"))
+def make_scene(setup: Setup, meshcat: Meshcat | None = None) -> Scene:
+    """The scene of a scenario, in a Meshcat of its own on localhost if none is given."""
+    if meshcat is None:
+        meshcat = Meshcat(MeshcatParams(host="localhost"))
     return Scene(
         meshcat,
         setup.robot,
