@@ -64,6 +64,11 @@ class TeachingSession:
         self.over = False
         self.accepted: Recording | None = None
         self._message = ""
+        self._sliders: Array
+        self._q_wanted: Array | None
+        self._samples: list[Array] | None
+        self._offered: Recording | None
+        self._segments: list[dict[str, Any]]
         self._restart()
 
     @property
@@ -169,10 +174,8 @@ class TeachingSession:
         start = self._setup.workcell.start
         self.led = LedArm(self._setup.workcell.arm, start, PERIOD)
         self._sliders = self._slider_values(self._X_WE_start)
-        self._q_wanted: Array | None = None
-        self._samples: list[Array] | None = None
-        self._offered: Recording | None = None
-        self._segments: list[dict[str, Any]] = []
+        self._q_wanted = self._samples = self._offered = None
+        self._segments = []
         self._inspector.clear()
         self._inspector.show_instance(self._X_WO)
 
