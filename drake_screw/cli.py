@@ -302,7 +302,7 @@ def inspect(
     In the terminal, and in Meshcat or on a page that can be kept. It begins with the last round
     that asked for a demonstration, at the instance where it did.
     """
-    from drake_screw.commands.inspect import inspect as carry_out
+    from drake_screw.commands.inspect import inspect_run as carry_out
 
     carry_out(run, Console(), round=round, instance=instance, html=html, host=host, port=port)
 

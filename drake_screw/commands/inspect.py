@@ -18,7 +18,7 @@ from drake_screw.web.selection import Selection, select
 from drake_screw.web.server import warning
 
 
-def inspect(
+def inspect_run(
     run: Path,
     console: Console,
     *,

@@ -22,8 +22,8 @@ SERVE = """
 import sys
 from pathlib import Path
 from rich.console import Console
-from drake_screw.commands.inspect import inspect
-inspect(Path(sys.argv[1]), Console(width=200), round=1)
+from drake_screw.commands.inspect import inspect_run
+inspect_run(Path(sys.argv[1]), Console(width=200), round=1)
 """
 
 

@@ -17,7 +17,7 @@ from rich.console import Console
 
 from drake_screw import cli
 from drake_screw.acquisition import Finished
-from drake_screw.commands.inspect import inspect, instance_table
+from drake_screw.commands.inspect import inspect_run, instance_table
 from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause
 from drake_screw.runs.inspection import open_inspection
@@ -130,7 +130,7 @@ def test_a_round_without_failures_offers_no_earliest(inspection, monkeypatch) ->
 def test_the_command_tells_every_demonstration(finished_run, tmp_path) -> None:
     console = Console(width=200, record=True, file=open("/dev/null", "w"))  # noqa: SIM115
     page = tmp_path / "deep" / "page.html"
-    inspect(finished_run, console, round=2, html=page)
+    inspect_run(finished_run, console, round=2, html=page)
     text = console.export_text()
     assert "round 2, instance" in text
     assert re.search(r"demonstration 1 (fails|succeeds) in", text)
@@ -161,9 +161,9 @@ def test_the_table_names_segment_and_joint(inspection) -> None:
 def test_rounds_and_instances_that_do_not_exist(finished_run) -> None:
     console = Console(quiet=True)
     with pytest.raises(ScenarioError, match=r"no round 3\n.*1 to 2"):
-        inspect(finished_run, console, round=3, html=Path("never.html"))
+        inspect_run(finished_run, console, round=3, html=Path("never.html"))
     with pytest.raises(ScenarioError, match="no instance -1"):
-        inspect(finished_run, console, instance=-1, html=Path("never.html"))
+        inspect_run(finished_run, console, instance=-1, html=Path("never.html"))
 
 
 def test_a_run_without_rounds(copy) -> None:
