@@ -137,7 +137,7 @@ def run(
     from drake_screw.acquisition import Finished
     from drake_screw.commands.console import RunConsole, show_certificate
     from drake_screw.runs.run import new_run, open_run, resumable
-    from drake_screw.web.pages import Pages
+    from drake_screw.web.run_pages import RunPages
 
     console = Console()
 
@@ -154,7 +154,7 @@ def run(
         loaded = resumable(open_run(resume)).setup.scenario
     else:
         loaded = _load(_given(scenario), _changes(set_, seed, demonstrations), model)
-    with Pages(loaded, watched=meshcat, host=host, port=port, announce=announce) as pages:
+    with RunPages(loaded, watched=meshcat, host=host, port=port, announce=announce) as pages:
         job = (
             new_run(loaded, output, **pages.parts)
             if resume is None
@@ -299,7 +299,7 @@ def inspect(
     In the terminal, and in Meshcat or on a page that can be kept. It begins with the last round
     that asked for a demonstration, at the instance where it did.
     """
-    from drake_screw.web.inspector_page import inspect as carry_out
+    from drake_screw.commands.inspect import inspect_run as carry_out
 
     carry_out(run, Console(), round=round, instance=instance, html=html, host=host, port=port)
 

@@ -39,9 +39,10 @@ def _save_scene(setup: Setup, rounds: Sequence[RoundFinished], file: Path) -> No
     scene.save_html(file)
 
 
-def make_scene(setup: Setup) -> Scene:
-    """A Meshcat scene of a scenario, served on localhost only."""
-    meshcat = Meshcat(MeshcatParams(host="localhost"))
+def make_scene(setup: Setup, meshcat: Meshcat | None = None) -> Scene:
+    """The scene of a scenario, in a Meshcat of its own on localhost if none is given."""
+    if meshcat is None:
+        meshcat = Meshcat(MeshcatParams(host="localhost"))
     return Scene(
         meshcat,
         setup.robot,

@@ -12,9 +12,9 @@ from drake_screw.runs.run import open_run
 from drake_screw.screws import sclerp_position
 from drake_screw.visualization.attempt import DONE, FAILED
 from drake_screw.web.charts import STATUS_COLORS
-from drake_screw.web.choice import choose
 from drake_screw.web.inspector_page import save_page
 from drake_screw.web.report_page import write_report
+from drake_screw.web.selection import select
 from tests.browser.conftest import Browser, program
 
 HAND = "workcell/baxter/left_hand"
@@ -22,8 +22,8 @@ SERVE = """
 import sys
 from pathlib import Path
 from rich.console import Console
-from drake_screw.web.inspector_page import inspect
-inspect(Path(sys.argv[1]), Console(width=200), round=1)
+from drake_screw.commands.inspect import inspect_run
+inspect_run(Path(sys.argv[1]), Console(width=200), round=1)
 """
 
 
@@ -35,7 +35,7 @@ def reader(finished_run):
 @pytest.fixture(scope="module")
 def page(reader, tmp_path_factory) -> Path:
     """The second round's suggested instance, with both demonstrations."""
-    return save_page(reader, choose(reader, 1), tmp_path_factory.mktemp("page") / "p.html")
+    return save_page(reader, select(reader, 1), tmp_path_factory.mktemp("page") / "p.html")
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def opened(browser, page, reader) -> None:
     for box, checked in {"arm": 1, "ghost": 1, "dots": 0}.items():
         toggle(browser, f"#{box}-shown", bool(checked))
     toggle(browser, "#all-axes", False)
-    best = choose(reader, 1).demonstration + 1
+    best = select(reader, 1).demonstration + 1
     browser.click(f"#demonstrations li:nth-child({best})")
 
 
@@ -69,8 +69,8 @@ def near(screen: np.ndarray, at: tuple[int, int], color: str, *, reach: int = 5)
 
 
 def test_screw_segments_have_their_colours_where_they_are(browser, opened, reader) -> None:
-    choice = choose(reader, 1)
-    tried = reader.attempt(1, choice.instance, choice.demonstration)
+    selection = select(reader, 1)
+    tried = reader.attempt(1, selection.instance, selection.demonstration)
     for box in ("#arm-shown", "#ghost-shown"):
         browser.click(box)
     screens = browser.screen()
@@ -88,8 +88,8 @@ def test_screw_segments_have_their_colours_where_they_are(browser, opened, reade
 
 
 def test_the_ghost_stands_where_the_plan_failed(browser, opened, reader) -> None:
-    choice = choose(reader, 1)
-    ghost = f"attempts/{choice.demonstration + 1:02d}/ghost"
+    selection = select(reader, 1)
+    ghost = f"attempts/{selection.demonstration + 1:02d}/ghost"
     assert browser.node(ghost)["seen"]
     last = int(browser.ask("return document.querySelector('#slider').max"))
     browser.slide("#slider", last)
@@ -100,8 +100,8 @@ def test_the_ghost_stands_where_the_plan_failed(browser, opened, reader) -> None
 
 
 def test_the_slider_moves_the_arm_and_the_table(browser, opened, reader) -> None:
-    choice = choose(reader, 1)
-    tried = reader.attempt(1, choice.instance, choice.demonstration)
+    selection = select(reader, 1)
+    tried = reader.attempt(1, selection.instance, selection.demonstration)
     places, margins = [], []
     for index in (0, 30, 60):
         browser.slide("#slider", index)
@@ -134,8 +134,8 @@ def test_a_page_shows_each_demonstration_by_itself(browser, opened) -> None:
 def test_the_screws_at_the_slider_and_at_the_failure_show_their_axes(
     browser, opened, reader
 ) -> None:
-    choice = choose(reader, 1)
-    tried = reader.attempt(1, choice.instance, choice.demonstration)
+    selection = select(reader, 1)
+    tried = reader.attempt(1, selection.instance, selection.demonstration)
     axes = [f"attempts/{tried.number + 1:02d}/axes/{i:02d}" for i in range(1, 6)]
 
     def shown() -> set[int]:

@@ -31,7 +31,7 @@ from drake_screw.visualization.linkage import Linkage
 from drake_screw.web.arm_sketch import arm_sketch
 from drake_screw.web.attempt_tables import attempts_csv, attempts_json
 from drake_screw.web.charts import joint_chart, joint_strip, work_area_map
-from drake_screw.web.panel import drawn_state
+from drake_screw.web.inspector_panel import drawn_state
 from tests.visualization.conftest import BOWL
 from tests.visualization.test_scene import BAXTER, TABLE
 

@@ -17,13 +17,14 @@ from rich.console import Console
 
 from drake_screw import cli
 from drake_screw.acquisition import Finished
+from drake_screw.commands.inspect import inspect_run, instance_table
 from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause
 from drake_screw.runs.run import open_run
 from drake_screw.visualization.lifetime import page_meshcat
-from drake_screw.web.choice import changed, choose, steps
-from drake_screw.web.inspector_page import inspect, instance_table, save_page
-from drake_screw.web.stage import Stage
+from drake_screw.web.inspector_page import save_page
+from drake_screw.web.inspector_scene import InspectorScene
+from drake_screw.web.selection import after_message, select, steps
 from tests.small_runs import finished_run
 
 __all__ = ["finished_run"]
@@ -40,10 +41,10 @@ def copy(finished_run, tmp_path) -> Path:
 
 
 def test_it_begins_at_the_suggested_instance(reader) -> None:
-    choice = choose(reader, 1)
+    selection = select(reader, 1)
     event = reader.event(1)
-    assert np.array_equal(event.evaluation.x_y_yaw[choice.instance], event.suggestion.x_y_yaw)
-    assert event.evaluation.failed[choice.instance]
+    assert np.array_equal(event.evaluation.x_y_yaw[selection.instance], event.suggestion.x_y_yaw)
+    assert event.evaluation.failed[selection.instance]
 
 
 def test_plans_end_as_the_run_found(reader) -> None:
@@ -68,25 +69,25 @@ def test_the_best_demonstration_is_shown_first(reader) -> None:
 
 
 def test_steps_go_through_the_failing_instances_of_a_region(reader) -> None:
-    choice = changed(reader, choose(reader, 0), {"region": 15})
+    selection = after_message(reader, select(reader, 0), {"region": 15})
     event, seen = reader.event(0), []
     for _ in range(5):
-        assert event.evaluation.region[choice.instance] == 15
-        assert event.evaluation.failed[choice.instance]
-        seen.append(choice.instance)
-        choice = changed(reader, choice, {"step": "next"})
+        assert event.evaluation.region[selection.instance] == 15
+        assert event.evaluation.failed[selection.instance]
+        seen.append(selection.instance)
+        selection = after_message(reader, selection, {"step": "next"})
     assert len(set(seen)) == 5
     furthest = event.evaluation.outcomes[seen].furthest_segment
     assert (np.diff(furthest) >= 0).all()
-    assert changed(reader, choice, {"step": "previous"}).instance == seen[-1]
-    assert changed(reader, choice, {"step": "earliest"}).instance == seen[0]
+    assert after_message(reader, selection, {"step": "previous"}).instance == seen[-1]
+    assert after_message(reader, selection, {"step": "earliest"}).instance == seen[0]
 
 
 def test_a_point_on_the_map_leads_to_the_nearest_failing_instance(reader) -> None:
-    choice = choose(reader, 0)
+    selection = select(reader, 0)
     event = reader.event(0)
     wanted = event.evaluation.x_y_yaw[np.flatnonzero(event.evaluation.failed)[100], 0]
-    moved = changed(reader, choice, {"at": [float(wanted[0]), float(wanted[1])]})
+    moved = after_message(reader, selection, {"at": [float(wanted[0]), float(wanted[1])]})
     assert np.allclose(event.evaluation.x_y_yaw[moved.instance, 0, :2], wanted[:2])
 
 
@@ -105,8 +106,8 @@ def test_a_point_on_the_map_leads_to_the_nearest_failing_instance(reader) -> Non
     ],
 )
 def test_nonsense_changes_nothing(reader, message) -> None:
-    choice = choose(reader, 1)
-    assert changed(reader, choice, message) == choice
+    selection = select(reader, 1)
+    assert after_message(reader, selection, message) == selection
 
 
 def test_a_round_without_failures_offers_no_earliest(reader, monkeypatch) -> None:
@@ -120,15 +121,15 @@ def test_a_round_without_failures_offers_no_earliest(reader, monkeypatch) -> Non
     )
     other = open_run(reader.directory.path).reader
     monkeypatch.setattr(other, "event", lambda round: replace(event, evaluation=part))
-    choice = choose(other, 0)
-    assert part.outcomes.any_success[choice.instance]
-    assert set(steps(other, choice)) <= {"previous", "next"}
+    selection = select(other, 0)
+    assert part.outcomes.any_success[selection.instance]
+    assert set(steps(other, selection)) <= {"previous", "next"}
 
 
 def test_the_command_tells_every_demonstration(finished_run, tmp_path) -> None:
     console = Console(width=200, record=True, file=open("/dev/null", "w"))  # noqa: SIM115
     page = tmp_path / "deep" / "page.html"
-    inspect(finished_run, console, round=2, html=page)
+    inspect_run(finished_run, console, round=2, html=page)
     text = console.export_text()
     assert "round 2, instance" in text
     assert re.search(r"demonstration 1 (fails|succeeds) in", text)
@@ -159,9 +160,9 @@ def test_the_table_names_segment_and_joint(reader) -> None:
 def test_rounds_and_instances_that_do_not_exist(finished_run) -> None:
     console = Console(quiet=True)
     with pytest.raises(ScenarioError, match=r"no round 3\n.*1 to 2"):
-        inspect(finished_run, console, round=3, html=Path("never.html"))
+        inspect_run(finished_run, console, round=3, html=Path("never.html"))
     with pytest.raises(ScenarioError, match="no instance -1"):
-        inspect(finished_run, console, instance=-1, html=Path("never.html"))
+        inspect_run(finished_run, console, instance=-1, html=Path("never.html"))
 
 
 def test_a_run_without_rounds(copy) -> None:
@@ -230,7 +231,7 @@ def swap_rounds(folder: Path) -> None:
 def test_a_damaged_round(copy, damage) -> None:
     damage(copy)
     with pytest.raises(RunDirectoryError, match="round 2"):
-        choose(open_run(copy).reader, 1)
+        select(open_run(copy).reader, 1)
 
 
 def rewritten(**changes: object):
@@ -339,24 +340,24 @@ def test_half_a_million_instances_are_thinned_and_open_quickly(reader, monkeypat
     other = open_run(reader.directory.path).reader
     monkeypatch.setattr(other, "event", lambda round: replace(event, evaluation=large))
     begun = time.process_time()
-    stage = Stage(other, page_meshcat("localhost"))
-    state = stage.show(choose(other, 1), live=True)
+    scene = InspectorScene(other, page_meshcat("localhost"))
+    state = scene.show(select(other, 1), live=True)
     assert time.process_time() - begun < 5.0
     assert state["map_words"].endswith(
         "2,000 of 516,928 instances, drawn at random (in 3-D: 6,000)"
     )
     assert len(json.dumps(state)) < 500_000
-    assert len(stage.meshcat.StaticHtml()) < 10e6
+    assert len(scene.meshcat.StaticHtml()) < 10e6
 
 
 def test_a_page_is_not_overwritten_by_its_numbers(reader, tmp_path) -> None:
-    choice = choose(reader, 1)
+    selection = select(reader, 1)
     for name in ("page.json", "page.csv"):
         with pytest.raises(DrakeScrewError, match="its own numbers"):
-            save_page(reader, choice, tmp_path / name)
+            save_page(reader, selection, tmp_path / name)
     (tmp_path / "file").touch()
     with pytest.raises(DrakeScrewError, match="cannot be written"):
-        save_page(reader, choice, tmp_path / "file" / "page.html")
+        save_page(reader, selection, tmp_path / "file" / "page.html")
     assert [file.name for file in tmp_path.iterdir()] == ["file"]
 
 

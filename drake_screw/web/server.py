@@ -21,8 +21,10 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
+from markupsafe import Markup
+
 from drake_screw.errors import DrakeScrewError
-from drake_screw.web.panel import with_panel
+from drake_screw.visualization.meshcat_page import add_to_page, render
 
 WAIT = 20.0
 """s. For so long a page waits for a change before it asks again."""
@@ -35,23 +37,6 @@ EVERYWHERE = ("0.0.0.0",)
 _DIRECT = urllib.request.build_opener(urllib.request.ProxyHandler({}))
 _LARGEST = 1e9
 """No number of a message is larger."""
-
-_SOCKET = """<script>
-// Meshcat would connect again to whatever program comes next on its port, and load its page.
-let connected = false;
-window.WebSocket = class extends WebSocket {
-  constructor(url) {
-    if (connected) throw "the program has ended";
-    connected = true;
-    const there = new URL(url);
-    there.port = "PORT"; there.pathname = "/"; there.search = "";
-    super(there.href);
-    this.addEventListener("message",
-      () => window.dispatchEvent(new Event("meshcat-message")));
-  }
-};
-</script>
-"""
 
 
 def check_address(host: str, port: int | None) -> None:
@@ -68,7 +53,7 @@ def check_address(host: str, port: int | None) -> None:
 
 
 def warning(host: str) -> str | None:
-    """What to tell people before a page is served on an address; None if only for this machine."""
+    """What to warn of before a page is served on an address; None if only for this machine."""
     if _for_this_machine(host):
         return None
     return f"warning: served on {host} to everyone who can reach this machine, without a password"
@@ -96,7 +81,7 @@ class PanelServer:
 
     Args:
         meshcat_port: where Meshcat serves on this machine.
-        panel: HTML of the panel.
+        panel: the panel.
         title: of the page.
         host: "localhost", or an address to listen on.
         port: to listen on; any free one if None.
@@ -108,7 +93,7 @@ class PanelServer:
     def __init__(
         self,
         meshcat_port: int,
-        panel: str,
+        panel: Markup,
         title: str,
         *,
         host: str = "localhost",
@@ -165,17 +150,19 @@ class PanelServer:
         Pages that were closed are not waited for. Meshcat itself serves until it ends.
         """
 
-        def told() -> bool:
+        def up_to_date() -> bool:
             return self._waiting == 0 and self._sent in (0, self._version)
 
         with self._changed:
             self._closed = True
             self._changed.notify_all()
-            self._changed.wait_for(told, LAST)
+            self._changed.wait_for(up_to_date, LAST)
         self._server.shutdown()
         self._server.server_close()
 
-    def _get(self, request: BaseHTTPRequestHandler, meshcat: str, panel: str, title: str) -> None:
+    def _get(
+        self, request: BaseHTTPRequestHandler, meshcat: str, panel: Markup, title: str
+    ) -> None:
         place = urlsplit(request.path)
         if place.path == "/state":
             given = parse_qs(place.query).get("after", ["0"])[0]
@@ -202,8 +189,9 @@ class PanelServer:
             _answer(request, code, "text/plain", str(error).encode())
             return
         if place.path in ("/", "/index.html"):
-            head = _SOCKET.replace("PORT", str(urlsplit(meshcat).port))
-            content = with_panel(content.decode(), panel, title, head).encode()
+            port = str(urlsplit(meshcat).port)
+            head = render("drake_screw.web", "web_socket.html.j2", port=port)
+            content = add_to_page(content.decode(), panel, title=title, head=head).encode()
         _answer(request, 200, kind, content)
 
     def _post(self, request: BaseHTTPRequestHandler) -> None:
@@ -243,7 +231,7 @@ class _Server(ThreadingHTTPServer):
     daemon_threads = True
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """A page that was closed is nothing to tell people about."""
+        """A page that was closed is no error."""
         if not isinstance(sys.exception(), ConnectionError):
             super().handle_error(request, client_address)
 

@@ -1,12 +1,12 @@
 // The panel at which a person leads the arm.
 const dragging = new Set();
 let rows = null;
-function slider(table, name, low, high, send) {
+function slider(table, name, low, high, changed) {
   const row = make("tr"), input = make("input"), value = make("td"), margin = make("td");
   Object.assign(input, { type: "range", min: low, max: high, step: (high - low) / 2000 });
   input.setAttribute("aria-label", name);
   let last = 0, later;
-  const pass = () => { last = Date.now(); send(Number(input.value)); };
+  const pass = () => { last = Date.now(); changed(Number(input.value)); };
   input.oninput = () => {
     clearTimeout(later);
     if (Date.now() - last > 30) pass(); else later = setTimeout(pass, 30);
@@ -23,9 +23,9 @@ function slider(table, name, low, high, send) {
 function build(state) {
   rows = {
     hand: state.hand.map((h, i) => slider(element("hand"), h.name, h.low, h.high,
-      (value) => tell({ hand: i, value }))),
+      (value) => send({ hand: i, value }))),
     arm: state.joints.map((j, i) => slider(element("arm"), j.name, j.low, j.high,
-      (value) => tell({ joint: i, value }))),
+      (value) => send({ joint: i, value }))),
   };
 }
 listen((state) => {
@@ -38,7 +38,7 @@ listen((state) => {
   element("clock").textContent = state.clock;
   for (const button of document.querySelectorAll("[data-do]")) {
     button.disabled = !state.can.includes(button.dataset.do);
-    button.onclick = () => tell({ do: button.dataset.do });
+    button.onclick = () => send({ do: button.dataset.do });
   }
   state.hand.forEach((h, i) => {
     const row = rows.hand[i];
@@ -54,13 +54,7 @@ listen((state) => {
     row.row.className = j.margin < 0.01 ? "limit" : j.margin < 0.1 ? "near" : "";
     row.input.disabled = !state.leading;
   });
-  element("segments").replaceChildren(...state.segments.map((segment, i) => {
-    const item = make("li"), chip = make("span", "", "chip");
-    chip.style.background = segment.color;
-    item.append(make("span", i + 1, "number"), chip, make("span", segment.words));
-    return item;
-  }));
+  element("segments").replaceChildren(
+    ...state.segments.map((segment, i) => entry(i + 1, segment.color, segment.words)));
 });
-element("key").innerHTML = KEY.map(([color, text]) =>
-  `<div><i style="background: ${color}"></i>${text}</div>`).join("");
 window.dispatchEvent(new Event("resize"));

@@ -1,4 +1,4 @@
-"""The pages of a run: where it is watched, and where demonstrations are given."""
+"""The pages beside a run: where it is watched, and where demonstrations are given."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from drake_screw.errors import DrakeScrewError
 from drake_screw.runs.run import Listener
 from drake_screw.scenario.schema import Scenario
 from drake_screw.web.live_page import LivePage
-from drake_screw.web.panel_server import check_address, warning
+from drake_screw.web.server import check_address, warning
 from drake_screw.web.teaching_page import TeachingPage
 
 
-class Pages:
+class RunPages:
     """The pages of a run that is about to begin.
 
     An interactive teacher has a page of its own, where demonstrations are given; the one on which
@@ -26,12 +26,12 @@ class Pages:
         watched: show the run, even if the scenario does not say so.
         host: "localhost", or an address to listen on.
         port: of the page; if there are two, the teacher's has the next one. Free ones if None.
-        announce: told the addresses, and whenever a person is waited for.
+        announce: called with the addresses, and whenever a person is waited for.
 
     Attributes:
         watched: whether the run is shown.
         live: the page on which it is, once open.
-        teaching: the page where demonstrations are given, once open.
+        teaching: the page where demonstrations are given, if there is one.
 
     Raises:
         DrakeScrewError: they cannot be served there, or there are none.
@@ -92,9 +92,7 @@ class Pages:
             self._announce(risk)
         teach = ""
         if self._interactive:
-            setup.teacher  # noqa: B018 (it makes the page)
-            assert self.teaching is not None
-            teach = self.teaching.open()
+            teach = self._teaching_page(setup).open()
         if self.watched:
             self.live = LivePage(setup, host=self._host, port=self._port, teach=teach)
             self._announce(f"watch the run at {self.live.url}")
@@ -102,12 +100,16 @@ class Pages:
             self._announce(f"give demonstrations at {teach}")
 
     def _teacher(self, setup: Setup) -> InteractiveTeacher:
-        port = self._port + 1 if self._port is not None and self.watched else self._port
-        self.teaching = TeachingPage(
-            setup,
-            inbox=setup.scenario.teacher.folder,
-            host=self._host,
-            port=port,
-            announce=self._announce,
-        )
-        return InteractiveTeacher(self.teaching)
+        return InteractiveTeacher(self._teaching_page(setup))
+
+    def _teaching_page(self, setup: Setup) -> TeachingPage:
+        if self.teaching is None:
+            port = self._port + 1 if self._port is not None and self.watched else self._port
+            self.teaching = TeachingPage(
+                setup,
+                inbox=setup.scenario.teacher.folder,
+                host=self._host,
+                port=port,
+                announce=self._announce,
+            )
+        return self.teaching

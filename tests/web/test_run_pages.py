@@ -19,16 +19,16 @@ from drake_screw.errors import DrakeScrewError, RecordingError
 from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.lifetime import page_meshcat
-from drake_screw.web.lesson import DeskLesson
-from drake_screw.web.pages import Pages
-from drake_screw.web.panel_server import check_address
+from drake_screw.web.run_pages import RunPages
+from drake_screw.web.server import check_address
+from drake_screw.web.teaching_session import TeachingSession
 
 INTERACTIVE = "teacher={kind: interactive}"
 
 
-def open_pages(changes: list[str], said: list[str], **options: Any) -> Pages:
+def open_pages(changes: list[str], said: list[str], **options: Any) -> RunPages:
     scenario = load_scenario("pouring", changes)
-    pages = Pages(scenario, announce=said.append, **options)
+    pages = RunPages(scenario, announce=said.append, **options)
     pages.open(Setup(scenario, **pages.parts))
     return pages
 
@@ -39,9 +39,9 @@ def said() -> list[str]:
 
 
 @pytest.fixture
-def opened() -> Iterator[list[Pages]]:
+def opened() -> Iterator[list[RunPages]]:
     gc.collect()  # Meshcats that other tests left behind must not end in a page's thread
-    pages: list[Pages] = []
+    pages: list[RunPages] = []
     yield pages
     for page in pages:
         page.__exit__()
@@ -116,14 +116,14 @@ def test_everyone_is_warned_of_an_open_page(said, opened) -> None:
 def test_ports_are_checked_before_a_run_begins(taken) -> None:
     scenario = load_scenario("pouring")
     with pytest.raises(DrakeScrewError, match=f"cannot serve on localhost, port {taken}"):
-        Pages(scenario, watched=True, port=taken)
+        RunPages(scenario, watched=True, port=taken)
     interactive = load_scenario("pouring", [INTERACTIVE])
     with pytest.raises(DrakeScrewError, match="cannot serve"):
-        Pages(interactive, watched=True, port=taken - 1)
+        RunPages(interactive, watched=True, port=taken - 1)
     with pytest.raises(DrakeScrewError, match="this run has none"):
-        Pages(scenario, port=taken)
-    Pages(scenario)
-    Pages(interactive)
+        RunPages(scenario, port=taken)
+    RunPages(scenario)
+    RunPages(interactive)
 
 
 def test_a_page_gets_the_port_that_meshcat_would_take_next(said, opened) -> None:
@@ -147,7 +147,7 @@ def test_nonsense_does_not_move_the_arm() -> None:
     setup = Setup(load_scenario("pouring", [INTERACTIVE]))
     inspector = Inspector(page_meshcat("localhost"), setup.workcell, setup.objects)
     place = Suggestion(6, np.array([[0.85, 0.45, 0.0]]), 2)
-    lesson = DeskLesson(setup, inspector, place, 0)
+    session = TeachingSession(setup, inspector, place, 0)
     for message in (
         {"hand": 0, "value": float("nan")},
         {"hand": 6, "value": 0.1},
@@ -159,13 +159,13 @@ def test_nonsense_does_not_move_the_arm() -> None:
         {"do": 3},
         {},
     ):
-        lesson.hear(message)
-        assert not lesson.step(), message
-    assert not lesson.over
-    lesson.hear({"hand": 3, "value": 1e300})
-    lesson.step()
-    lesson.hear({"joint": 3, "value": 99.0})
-    while lesson.step():
+        session.handle(message)
+        assert not session.step(), message
+    assert not session.over
+    session.handle({"hand": 3, "value": 1e300})
+    session.step()
+    session.handle({"joint": 3, "value": 99.0})
+    while session.step():
         pass
     arm = setup.workcell.arm
-    assert 0.0 < arm.margin(lesson.led.q)[3] < 0.01
+    assert 0.0 < arm.margin(session.led.q)[3] < 0.01

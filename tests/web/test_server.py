@@ -8,15 +8,16 @@ import urllib.request
 from urllib.parse import urlsplit
 
 import pytest
+from markupsafe import Markup
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.web.panel_server import PanelServer, check_address, warning
+from drake_screw.web.server import PanelServer, check_address, warning
 
 
 @pytest.fixture
 def server(meshcat):
     gc.collect()  # Meshcats that other tests left behind must not end in the server's thread
-    server = PanelServer(meshcat.port(), "<p>my panel</p>", "a <title>")
+    server = PanelServer(meshcat.port(), Markup("<p>my panel</p>"), "a <title>")
     yield server
     server.close()
 
@@ -86,11 +87,11 @@ def test_other_messages_are_refused(server, content, kind, code) -> None:
 def test_a_taken_port_is_told(server, meshcat) -> None:
     port = int(server.url.rsplit(":", 1)[1].strip("/"))
     with pytest.raises(DrakeScrewError, match=f"port {port}"):
-        PanelServer(meshcat.port(), "", "", port=port)
+        PanelServer(meshcat.port(), Markup(), "", port=port)
 
 
 def test_a_page_that_waits_gets_the_last_state(meshcat) -> None:
-    server = PanelServer(meshcat.port(), "", "")
+    server = PanelServer(meshcat.port(), Markup(), "")
     server.show({"n": 1})
     assert json.loads(get(server, "state?after=0"))["state"] == {"n": 1}
     answers: list[bytes] = []

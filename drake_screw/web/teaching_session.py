@@ -1,4 +1,4 @@
-"""One request at the desk of an interactive teacher, from the suggestion to the recording."""
+"""One request for a demonstration on the teaching page, from the suggestion to the recording."""
 
 from __future__ import annotations
 
@@ -27,12 +27,31 @@ from drake_screw.visualization.palette import STATUS_COLORS
 PERIOD = 0.02
 """s. Between steps of the arm, and between samples of a recording."""
 REACH = 0.6
-"""m. How far the hand's sliders go to both sides of where it starts."""
-HAND = ("x", "y", "z", "tilt about its x", "tilt about its y", "roll about its z")
+"""m. How far the sliders of the end effector's position go to both sides of where it starts."""
+POSE_SLIDERS = (
+    ("x", "m"),
+    ("y", "m"),
+    ("z", "m"),
+    ("tilt about its x", "rad"),
+    ("tilt about its y", "rad"),
+    ("roll about its z", "rad"),
+)
 
 
-class DeskLesson:
-    """One request, from the suggestion to the accepted recording."""
+class TeachingSession:
+    """One request, from the suggestion to the accepted recording.
+
+    Args:
+        setup: of the run.
+        inspector: draws what a recording would do.
+        suggestion: where the demonstration is wanted.
+        number: of the demonstration, from 0.
+
+    Attributes:
+        led: the arm, as the person leads it.
+        over: whether the person has decided.
+        accepted: the recording they accepted, if they did.
+    """
 
     def __init__(
         self, setup: Setup, inspector: Inspector, suggestion: Suggestion, number: int
@@ -40,16 +59,16 @@ class DeskLesson:
         self._setup, self._inspector, self._number = setup, inspector, number
         self._suggestion = suggestion
         self._planner = ReferencePlanner(setup.workcell.arm, step=STEP)
-        self.X_WO = setup.area.X_WO(suggestion.x_y_yaw)
+        self._X_WO = setup.area.X_WO(suggestion.x_y_yaw)
+        self._X_WE_start = setup.workcell.arm.pose(setup.workcell.start)
         self.over = False
         self.accepted: Recording | None = None
         self._message = ""
-        self._X_WE = setup.workcell.arm.pose(setup.workcell.start)
-        self._hand: Array = self._hand_of(self._X_WE)
-        self._q_goal: Array | None = None
-        self._samples: list[Array] | None = None
-        self._offered: Recording | None = None
-        self._segments: list[dict[str, Any]] = []
+        self._sliders: Array
+        self._q_wanted: Array | None
+        self._samples: list[Array] | None
+        self._offered: Recording | None
+        self._segments: list[dict[str, Any]]
         self._restart()
 
     @property
@@ -58,48 +77,45 @@ class DeskLesson:
         return self._offered is None
 
     @property
-    def recording_now(self) -> bool:
+    def recording(self) -> bool:
         """Whether the arm's motion is being recorded."""
         return self._samples is not None
 
-    def hear(self, message: dict[str, Any]) -> None:
-        """A message of the panel; nonsense changes nothing."""
+    def handle(self, message: dict[str, Any]) -> None:
+        """A message of the panel; one that means nothing changes nothing.
+
+        Messages: ``{"do": "record"}`` (stop, accept, repeat, skip), ``{"hand": i, "value": v}``
+        (a slider of the end effector's pose), ``{"joint": j, "value": v}``; m or rad.
+        """
         match message:
-            case {"do": str(action)} if action in self._can():
+            case {"do": str(action)} if action in self._actions():
                 getattr(self, f"_{action}")()
-            case {"hand": int(axis), "value": int() | float() as value} if self.leading:
-                if 0 <= axis < 6 and isfinite(value):
-                    low, high = self._range
-                    self._hand[axis] = np.clip(value, low[axis], high[axis])
-                    self._q_goal = None
+            case {"hand": int(i), "value": int() | float() as value} if self.leading:
+                if 0 <= i < len(POSE_SLIDERS) and isfinite(value):
+                    low, high = self._slider_range
+                    self._sliders[i] = np.clip(value, low[i], high[i])
+                    self._q_wanted = None
             case {"joint": int(joint), "value": int() | float() as value} if self.leading:
                 if 0 <= joint < self.led.arm.n and isfinite(value):
-                    goal = self.led.q.copy() if self._q_goal is None else self._q_goal
-                    goal[joint] = value
-                    self._q_goal = goal
-
-    @property
-    def _range(self) -> tuple[Array, Array]:
-        """Ends of the hand's sliders."""
-        center = self._hand_of(self._X_WE)
-        half = np.array([REACH] * 3 + [np.pi] * 3)
-        return center - half, center + half
+                    wanted = self.led.q.copy() if self._q_wanted is None else self._q_wanted
+                    wanted[joint] = value
+                    self._q_wanted = wanted
 
     def step(self) -> bool:
         """One period of the arm's motion; returns whether it moved."""
         if not self.leading:
             return False
-        if self._q_goal is not None:
-            moved = self.led.lead_joints(self._q_goal)
-            self._hand = self._hand_of(self.led.arm.pose(self.led.q))
+        if self._q_wanted is not None:
+            moved = self.led.lead_joints(self._q_wanted)
+            self._sliders = self._slider_values(self.led.arm.pose(self.led.q))
         else:
-            moved = self.led.lead_hand(self._pose_of(self._hand))
+            moved = self.led.lead_hand(self._pose(self._sliders))
         if self._samples is not None:
             self._samples.append(self.led.q.copy())
         return moved
 
-    def take(self, folder: Path) -> str:
-        """Offer a recording from a folder; returns what became of it, for people."""
+    def offer_folder(self, folder: Path) -> str:
+        """Offer a recording from a folder; returns what became of it, in words."""
         arm, objects = self.led.arm, len(self._setup.objects)
         try:
             recording = read_recording(
@@ -116,7 +132,7 @@ class DeskLesson:
         """What the panel shows."""
         arm, q = self.led.arm, self.led.q
         margin = arm.margin(q)
-        low, high = self._range
+        low, high = self._slider_range
         stuck = "the arm cannot follow: a joint is at its limit, or it is stretched out"
         asked = place(self._suggestion, self._suggestion.regions or self._setup.regions)
         spacing = 1e3 * self._setup.segmentation.spacing
@@ -125,16 +141,14 @@ class DeskLesson:
             "title": f"{self._setup.scenario.name}: teach",
             "headline": f"demonstration {self._number + 1} is wanted at {asked}",
             "message": self._message or (stuck if self.led.stuck else ""),
-            "clock": f"recording, {seconds:.1f} s" if self.recording_now else "",
+            "clock": f"recording, {seconds:.1f} s" if self.recording else "",
             "hint": f"Move the hand by more than {spacing:.0f} mm while it turns: a turn on the "
             "spot leaves no trace in a recording.",
-            "can": self._can(),
+            "can": self._actions(),
             "leading": self.leading,
             "hand": [
                 {"name": n, "low": a, "high": b, "value": round(float(v), 5), "unit": u}
-                for n, a, b, v, u in zip(
-                    HAND, low, high, self._hand, ["m"] * 3 + ["rad"] * 3, strict=True
-                )
+                for (n, u), a, b, v in zip(POSE_SLIDERS, low, high, self._sliders, strict=True)
             ],
             "joints": [
                 {
@@ -150,28 +164,37 @@ class DeskLesson:
             "segments": self._segments,
         }
 
-    def _can(self) -> Sequence[str]:
+    def _actions(self) -> Sequence[str]:
+        """The buttons that can be pressed; each has a method."""
         if not self.leading:
             return ["accept", "repeat"]
-        return ["stop"] if self.recording_now else ["record", "skip"]
+        return ["stop"] if self.recording else ["record", "skip"]
 
     def _restart(self) -> None:
         start = self._setup.workcell.start
         self.led = LedArm(self._setup.workcell.arm, start, PERIOD)
-        self._hand = self._hand_of(self._X_WE)
-        self._q_goal = self._samples = self._offered = None
+        self._sliders = self._slider_values(self._X_WE_start)
+        self._q_wanted = self._samples = self._offered = None
         self._segments = []
         self._inspector.clear()
-        self._inspector.show_instance(self.X_WO)
+        self._inspector.show_instance(self._X_WO)
 
-    def _hand_of(self, X_WE: Array) -> Array:
-        """Position, and rotation vector in the hand's own frame from where it started."""
-        turned = pose(self._X_WE[:3, :3].T @ X_WE[:3, :3], np.zeros(3))
+    @property
+    def _slider_range(self) -> tuple[Array, Array]:
+        """(6,), (6,) m and rad, the ends of the sliders of the pose."""
+        middle = self._slider_values(self._X_WE_start)
+        half = np.array([REACH] * 3 + [np.pi] * 3)
+        return middle - half, middle + half
+
+    def _slider_values(self, X_WE: Array) -> Array:
+        """(6,) p_WE in m, and the rotation vector in rad from the start's E, in that frame."""
+        turned = pose(self._X_WE_start[:3, :3].T @ X_WE[:3, :3], np.zeros(3))
         return np.concatenate([X_WE[:3, 3], log(turned)[:3]])
 
-    def _pose_of(self, hand: Array) -> Array:
-        turned = exp(np.concatenate([hand[3:], np.zeros(3)]))[:3, :3]
-        return pose(self._X_WE[:3, :3] @ turned, hand[:3])
+    def _pose(self, values: Array) -> Array:
+        """X_WE (4, 4) that the sliders stand for; the inverse of `_slider_values`."""
+        turned = exp(np.concatenate([values[3:], np.zeros(3)]))[:3, :3]
+        return pose(self._X_WE_start[:3, :3] @ turned, values[:3])
 
     def _record(self) -> None:
         self._message, self._samples = "", [self.led.q.copy()]
@@ -185,7 +208,7 @@ class DeskLesson:
             arm.joint_names,
             PERIOD * np.arange(len(q)),
             q,
-            self.X_WO,
+            self._X_WO,
         )
         try:
             self._offer(checked(recording, arm.lower, arm.upper))
@@ -196,9 +219,9 @@ class DeskLesson:
         """Cut a recording into screws and plan the suggested instance with it."""
         demonstration = self._setup.learn(recording)
         start = self._setup.workcell.start
-        tried = attempt(self._planner, self._number, demonstration, self.X_WO, start)
+        tried = attempt(self._planner, self._number, demonstration, self._X_WO, start)
         self._inspector.draw(tried)
-        self._segments = _lines(tried)
+        self._segments = _segment_lines(tried)
         self._message = (
             f"{len(tried.guides)} guiding pose{'' if len(tried.guides) == 1 else 's'} found; "
             f"planned at the suggested place it {headline(tried)}"
@@ -216,7 +239,7 @@ class DeskLesson:
         self.over = True
 
 
-def _lines(tried: Attempt) -> list[dict[str, Any]]:
+def _segment_lines(tried: Attempt) -> list[dict[str, Any]]:
     return [
         {"color": STATUS_COLORS[status], "words": describe_segment(tried, i)}
         for i, status in enumerate(tried.status)
