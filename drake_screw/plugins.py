@@ -38,9 +38,9 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
         "scooping": "drake_screw.acquisition.simulated.motions:scooping",
     },
     "teachers": {
-        "simulated": "drake_screw.acquisition.simulated.teacher:SimulatedTeacher",
-        "recorded": "drake_screw.acquisition.recorded:RecordedTeacher",
-        "interactive": "drake_screw.acquisition.interactive:InteractiveTeacher",
+        "simulated": "drake_screw.assembly.teachers:simulated",
+        "recorded": "drake_screw.assembly.teachers:recorded",
+        "interactive": "drake_screw.assembly.teachers:interactive",
     },
     "recording_formats": {"folder": "drake_screw.demonstrations.library:read_recording"},
     "exporters": {

@@ -13,6 +13,7 @@ from typing import Any, Self
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.demonstrations import Recording, write_recording
+from drake_screw.demonstrations.library import JOINTS
 from drake_screw.errors import RunDirectoryError
 from drake_screw.files import fresh_folder, write_folder, write_text
 from drake_screw.runs.codec import json_text, read_run_record, save_evaluation
@@ -113,7 +114,7 @@ class RunDirectory:
         folder = self.path / DEMONSTRATIONS / f"{number + 1:02d}_{recording.name}"
 
         def fill(temporary: Path) -> None:
-            if recording.source is not None:
+            if recording.source is not None and (recording.source / JOINTS).is_file():
                 shutil.copytree(recording.source, temporary, dirs_exist_ok=True)
             else:
                 write_recording(recording, temporary, held)

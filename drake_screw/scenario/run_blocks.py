@@ -115,6 +115,9 @@ class TeacherBlock(Block):
     """library of a recorded teacher, or a folder an interactive one watches for recordings;
     relative to the scenario file"""
 
+    format: Annotated[str, PartOf("recording_formats")] = "folder"
+    """format of recordings: in `folder` of a recorded teacher, and in `demonstrations.initial`"""
+
     @property
     def options(self) -> dict[str, Option]:
         """The further keys of a teacher that is not built in; texts as they are written."""
