@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from drake_screw.acquisition import RecordedTeacher, Teacher
-from drake_screw.acquisition.interactive import InteractiveTeacher
+from drake_screw.acquisition.interactive_teacher import InteractiveTeacher
 from drake_screw.acquisition.simulated import SimulatedTeacher
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Recording, SegmentationConfig

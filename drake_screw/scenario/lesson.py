@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from drake_screw.acquisition import Suggestion
-from drake_screw.acquisition.interactive import LedArm
+from drake_screw.acquisition.guided_arm import GuidedArm
 from drake_screw.demonstrations import Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
@@ -73,8 +73,8 @@ class DeskLesson:
                     self._hand[axis] = np.clip(value, low[axis], high[axis])
                     self._q_goal = None
             case {"joint": int(joint), "value": int() | float() as value} if self.leading:
-                if 0 <= joint < self.led.arm.n and isfinite(value):
-                    goal = self.led.q.copy() if self._q_goal is None else self._q_goal
+                if 0 <= joint < self.guided.arm.n and isfinite(value):
+                    goal = self.guided.q.copy() if self._q_goal is None else self._q_goal
                     goal[joint] = value
                     self._q_goal = goal
 
@@ -90,17 +90,17 @@ class DeskLesson:
         if not self.leading:
             return False
         if self._q_goal is not None:
-            moved = self.led.lead_joints(self._q_goal)
-            self._hand = self._hand_of(self.led.arm.pose(self.led.q))
+            moved = self.guided.guide_joints(self._q_goal)
+            self._hand = self._hand_of(self.guided.arm.pose(self.guided.q))
         else:
-            moved = self.led.lead_hand(self._pose_of(self._hand))
+            moved = self.guided.guide_end_effector(self._pose_of(self._hand))
         if self._samples is not None:
-            self._samples.append(self.led.q.copy())
+            self._samples.append(self.guided.q.copy())
         return moved
 
     def take(self, folder: Path) -> str:
         """Offer a recording from a folder; returns what became of it, for people."""
-        arm, objects = self.led.arm, len(self._setup.objects)
+        arm, objects = self.guided.arm, len(self._setup.objects)
         try:
             recording = read_recording(
                 folder, arm.joint_names, arm.lower, arm.upper, objects=objects
@@ -114,7 +114,7 @@ class DeskLesson:
 
     def state(self) -> dict[str, Any]:
         """What the panel shows."""
-        arm, q = self.led.arm, self.led.q
+        arm, q = self.guided.arm, self.guided.q
         margin = arm.margin(q)
         low, high = self._range
         stuck = "the arm cannot follow: a joint is at its limit, or it is stretched out"
@@ -124,7 +124,7 @@ class DeskLesson:
         return {
             "title": f"{self._setup.scenario.name}: teach",
             "headline": f"demonstration {self._number + 1} is wanted at {asked}",
-            "message": self._message or (stuck if self.led.stuck else ""),
+            "message": self._message or (stuck if self.guided.stuck else ""),
             "clock": f"recording, {seconds:.1f} s" if self.recording_now else "",
             "hint": f"Move the hand by more than {spacing:.0f} mm while it turns: a turn on the "
             "spot leaves no trace in a recording.",
@@ -157,7 +157,7 @@ class DeskLesson:
 
     def _restart(self) -> None:
         start = self._setup.workcell.start
-        self.led = LedArm(self._setup.workcell.arm, start, PERIOD)
+        self.guided = GuidedArm(self._setup.workcell.arm, start, PERIOD)
         self._hand = self._hand_of(self._X_WE)
         self._q_goal = self._samples = self._offered = None
         self._segments = []
@@ -174,12 +174,12 @@ class DeskLesson:
         return pose(self._X_WE[:3, :3] @ turned, hand[:3])
 
     def _record(self) -> None:
-        self._message, self._samples = "", [self.led.q.copy()]
+        self._message, self._samples = "", [self.guided.q.copy()]
 
     def _stop(self) -> None:
         q = np.array(self._samples)
         self._samples = None
-        arm = self.led.arm
+        arm = self.guided.arm
         recording = Recording(
             f"demo_{self._number + 1:02d}",
             arm.joint_names,

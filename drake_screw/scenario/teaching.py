@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.acquisition import Event, Finished, RoundFinished, RoundStarted, Suggestion
-from drake_screw.acquisition.interactive import InteractiveTeacher
+from drake_screw.acquisition.interactive_teacher import InteractiveTeacher
 from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.library import JOINTS, OBJECTS
 from drake_screw.errors import RecordingError
@@ -39,7 +39,7 @@ _Files = tuple[tuple[str, int, int], ...]
 
 
 class TeachingDesk:
-    """Asks for demonstrations in the browser; a `Desk` of an `InteractiveTeacher`.
+    """Asks for demonstrations in the browser; the `DemonstrationPrompt` of an `InteractiveTeacher`.
 
     The page opens with the first request, unless it is opened before. The person leads the arm by
     sliders of the hand's pose (differential inverse kinematics keeps the joints within their
@@ -106,8 +106,8 @@ class TeachingDesk:
         self._idle("the run is starting")
         return self.url
 
-    def teach(self, suggestion: Suggestion, number: int) -> Recording | None:
-        """See `Desk.teach`; returns when the person has decided."""
+    def ask(self, suggestion: Suggestion, number: int) -> Recording | None:
+        """See `DemonstrationPrompt.ask`; returns when the person has decided."""
         self.open()
         assert self._server is not None
         self._invite(number)
@@ -129,7 +129,7 @@ class TeachingDesk:
                 moved |= self._look(lesson)
             if moved and now - said > SAY:
                 said, moved = now, lesson.recording_now
-                self._pose(lesson.led.q)
+                self._pose(lesson.guided.q)
                 self._server.show(lesson.state())
         self._inspector.clear()
         self._scene.clear_suggestion()
@@ -212,5 +212,5 @@ def desk_of(setup: Setup) -> TeachingDesk | None:
     if setup.scenario.teacher.kind != "interactive":
         return None
     assert isinstance(setup.teacher, InteractiveTeacher)
-    assert isinstance(setup.teacher.desk, TeachingDesk)
-    return setup.teacher.desk
+    assert isinstance(setup.teacher.prompt, TeachingDesk)
+    return setup.teacher.prompt

@@ -166,4 +166,4 @@ def test_nonsense_does_not_move_the_arm(console, opened) -> None:
     while lesson.step():
         pass
     arm = setup.workcell.arm
-    assert 0.0 < arm.margin(lesson.led.q)[3] < 0.01
+    assert 0.0 < arm.margin(lesson.guided.q)[3] < 0.01

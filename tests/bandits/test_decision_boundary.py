@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from bernoulli import GOAL, stopping_probability
 
-from drake_screw.bandits.boundary import ClearBoundary, clear_boundary, deciding_size
 from drake_screw.bandits.clopper_pearson import at_most
+from drake_screw.bandits.decision_boundary import ClearBoundary, clear_boundary, deciding_size
 from drake_screw.bandits.mixture import ln_e_clear, ln_e_flag
 from drake_screw.bandits.spending import attempt_delta, look_delta
 
