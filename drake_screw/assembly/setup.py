@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.acquisition import Evaluator, Teacher, TreeEvaluator
-from drake_screw.acquisition.evaluation import Progress
+from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
 from drake_screw.assembly.recorder import Recorder
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy

@@ -15,7 +15,7 @@ from drake_screw.acquisition import (
     TreeEvaluator,
     acquire,
 )
-from drake_screw.acquisition.evaluation import Progress
+from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.runs.reader import RunReader
