@@ -19,10 +19,6 @@ from drake_screw.typing import Array
 
 EVALUATIONS_PER_STEP = 6
 
-SPACING = 0.05
-"""rad (or m), joint motion between two points of a path; parts of an arm then stray from the
-straight line between their places at both points by a millimetre at most."""
-
 _LOG = logging.getLogger(__name__)
 
 
@@ -96,15 +92,12 @@ class BatchPlanner:
         X_WO: ArrayLike,
         q_start: ArrayLike,
         which: ArrayLike,
-        *,
-        spacing: float = SPACING,
     ) -> tuple[Plan, ...]:
         """The plans behind outcomes: the joint paths that were followed to find them.
 
         Args:
             demonstrations, X_WO, q_start: as for `all_outcomes`.
             which: (N,) indices of the demonstration that each instance is planned with.
-            spacing: rad (or m), joint motion (sum over the joints) between two points of a path.
 
         Returns:
             N plans, each up to where it failed if it did. Their outcomes are those of
@@ -116,7 +109,8 @@ class BatchPlanner:
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         which = np.asarray(which, dtype=np.int64)
         self._check(demonstrations, X_WO, q_start)
-        limits = np.stack([self.chain.lower, self.chain.upper])
+        if len(X_WO) == 0:
+            return ()
         failed = self._failed_start(q_start, (len(X_WO),))
         if failed is not None:
             stay = np.zeros(1, dtype=np.int64), np.zeros(1)
@@ -130,12 +124,11 @@ class BatchPlanner:
             which,
             threads=self.threads,
         )
+        limits = np.stack([self.chain.lower, self.chain.upper])
         return tuple(
             plan
             for answers in traced
-            for plan in joint_paths(
-                _outcomes(answers)[:, 0], answers.trace, q_start, limits, spacing
-            )
+            for plan in joint_paths(_outcomes(answers)[:, 0], answers.trace, q_start, limits)
         )
 
     def plan(self, demonstration: Demonstration, X_WO: ArrayLike, q_start: ArrayLike) -> Plan:

@@ -12,9 +12,15 @@ from drake_screw.planning.compiled import Trace
 from drake_screw.planning.outcomes import Cause, Outcomes, Plan
 from drake_screw.typing import Array
 
+SPACING = 0.1
+"""rad (or m), joint motion, summed up over the joints, between two points of a path at most."""
+
+FEWEST = 4
+"""Parts of a step at least; the points between them tell its polynomial."""
+
 
 def joint_paths(
-    outcomes: Outcomes, trace: Trace, q_start: Array, limits: Array, spacing: float
+    outcomes: Outcomes, trace: Trace, q_start: Array, limits: Array
 ) -> tuple[Plan, ...]:
     """Sample the paths of plans.
 
@@ -26,9 +32,8 @@ def joint_paths(
         trace: of their steps.
         q_start: (n,) rad or m, where all start.
         limits: (2, n) lower and upper joint limits.
-        spacing: rad (or m), joint motion (sum over the joints) between two points, about.
     """
-    parts = _parts(trace, spacing)
+    parts = _parts(trace)
     step = np.repeat(np.arange(len(parts)), parts)
     number = 1 + np.arange(len(step)) - np.repeat(np.cumsum(parts) - parts, parts)
     u = trace.part[step] * number / parts[step]
@@ -36,7 +41,7 @@ def joint_paths(
     s = trace.s[step, 0] + u * (trace.s[step, 1] - trace.s[step, 0])
     first = np.concatenate([[0], np.cumsum(parts)])[trace.first]
     plans = []
-    for i, outcome in enumerate(outcomes[j] for j in range(len(trace.count))):
+    for i, outcome in enumerate(outcomes[j] for j in range(len(trace.steps))):
         own = slice(first[i], first[i + 1])
         path = np.concatenate([q_start[None], q[own]])
         if outcome.cause == Cause.JOINT_LIMIT:
@@ -56,9 +61,10 @@ def dense_output(q: Array, u: Array) -> Array:
     return q0 + u * (q1 - q0) + u * v * (v * (d0 - q1 + q0) + u * (q1 - q0 - d1) + u * v * bend)
 
 
-def _parts(trace: Trace, spacing: float) -> Array:
+def _parts(trace: Trace) -> Array:
     """Into how many parts each step is divided; none if nothing of it is used."""
     q0, q1, d0, d1, _ = np.moveaxis(trace.q, 1, 0)
     motion = np.max([np.abs(q1 - q0), np.abs(d0), np.abs(d1)], axis=0).sum(axis=-1)
-    parts = np.maximum(np.ceil(trace.part * motion / spacing), 1.0)
+    fewest = np.where(trace.s[:, 0] < trace.s[:, 1], FEWEST, 1)
+    parts = np.maximum(np.ceil(trace.part * motion / SPACING), fewest)
     return np.where(trace.part > 0.0, parts, 0.0).astype(np.int64)

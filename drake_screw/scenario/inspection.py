@@ -12,16 +12,13 @@ import numpy as np
 from drake_screw.acquisition import RoundFinished, Suggestion
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.planning import Cause, Outcomes, ReferencePlanner
+from drake_screw.planning import Cause, Outcomes
 from drake_screw.scenario.assemble import Setup
 from drake_screw.scenario.run_directory import RunDirectory
 from drake_screw.scenario.runner import Run, open_run
 from drake_screw.visualization.attempt import Attempt, attempt, cut_short
 from drake_screw.visualization.browsing import Catalogue, catalogue
 from drake_screw.visualization.rounds import cells
-
-STEP = 0.02
-"""Of the reference planner; twice its usual one, which outcomes hardly feel."""
 
 
 class Inspection:
@@ -37,7 +34,6 @@ class Inspection:
     def __init__(self, run: Run) -> None:
         self.run = run
         self.setup: Setup = run.setup
-        self.planner = ReferencePlanner(self.setup.workcell.arm, step=STEP)
         self._demonstrations: list[Demonstration] = []
         self.event = lru_cache(maxsize=8)(self._event)
         self.catalogue = lru_cache(maxsize=8)(self._catalogue)
@@ -106,12 +102,8 @@ class Inspection:
 
     def best(self, round: int, instance: int) -> int | None:
         """The demonstration that comes furthest at an instance."""
-        outcomes = self.outcomes(round, instance)
-        if outcomes.shape[0] == 0:
-            return None
-        progress = outcomes.segment + np.clip(outcomes.fraction.astype(float), 0.0, 0.999)
-        progress = np.where(outcomes.cause == Cause.NOT_TRIED, -1.0, progress)
-        return int(np.where(outcomes.success, np.inf, progress).argmax())
+        best = int(self.outcomes(round, instance).best_attempt)
+        return None if best < 0 else best
 
     def attempts(self, round: int, instance: int) -> list[Attempt]:
         """All demonstrations of a round tried at an instance."""
@@ -122,8 +114,9 @@ class Inspection:
         """One demonstration tried at an instance, cut short where the run saw a collision."""
         event = self.event(round)
         X_WO = self.setup.area.X_WO(event.evaluation.x_y_yaw[instance])
-        start, workcell = self.setup.workcell.start, self.setup.workcell
-        tried = attempt(self.planner, number, event.demonstrations[number], X_WO, start)
+        workcell, demonstration = self.setup.workcell, event.demonstrations[number]
+        plan = self.setup.batch_planner.plan(demonstration, X_WO, workcell.start)
+        tried = attempt(workcell.arm, number, demonstration, X_WO, plan)
         found = event.evaluation.outcomes[instance][number]
         if int(found.cause) == Cause.COLLISION and int(tried.cause) != Cause.COLLISION:
             tried = replace(tried, plan=cut_short(tried.plan, found))

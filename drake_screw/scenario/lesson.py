@@ -14,9 +14,7 @@ from drake_screw.acquisition.interactive import LedArm
 from drake_screw.demonstrations import Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
-from drake_screw.planning import ReferencePlanner
 from drake_screw.scenario.assemble import Setup
-from drake_screw.scenario.inspection import STEP
 from drake_screw.scenario.narration import place
 from drake_screw.screws import exp, log, pose
 from drake_screw.typing import Array
@@ -39,7 +37,6 @@ class DeskLesson:
     ) -> None:
         self._setup, self._inspector, self._number = setup, inspector, number
         self._suggestion = suggestion
-        self._planner = ReferencePlanner(setup.workcell.arm, step=STEP)
         self.X_WO = setup.area.X_WO(suggestion.x_y_yaw)
         self.over = False
         self.accepted: Recording | None = None
@@ -195,8 +192,9 @@ class DeskLesson:
     def _offer(self, recording: Recording) -> None:
         """Cut a recording into screws and plan the suggested instance with it."""
         demonstration = self._setup.learn(recording)
-        start = self._setup.workcell.start
-        tried = attempt(self._planner, self._number, demonstration, self.X_WO, start)
+        workcell = self._setup.workcell
+        plan = self._setup.batch_planner.plan(demonstration, self.X_WO, workcell.start)
+        tried = attempt(workcell.arm, self._number, demonstration, self.X_WO, plan)
         self._inspector.draw(tried)
         self._segments = _lines(tried)
         self._message = (

@@ -139,9 +139,8 @@ class Kernel:
                 trace = new_trace(places, len(q_start))
                 answers = _unanswered(len(places), len(X_OE), trace)
                 self._run(problem, X_WO[part], tried[part], 1, answers)
-                places = trace.count
-            rows, columns = np.arange(len(places))[:, None], tried[part]
-            return Answers(*(x[rows, columns] for x in answers[:-1]), trace)
+                places = trace.steps
+            return answers.part((np.arange(len(places))[:, None], tried[part]))
 
         traced = _share(work, _parts(len(X_WO), TRACED), threads)
         arm_module.mark_compiled(self._module)

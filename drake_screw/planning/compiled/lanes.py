@@ -5,7 +5,7 @@ Compiled as part of the code of an arm (kernel.py), and not on its own.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit, uintp
@@ -101,14 +101,14 @@ class Answers(NamedTuple):
     steps: NDArray[np.int32]
     trace: Trace
 
-    def part(self, instances: slice) -> Answers:
-        """Views on the answers of some instances, with the same trace."""
+    def part(self, index: Any) -> Answers:
+        """The answers at an index, with the same trace."""
         return Answers(
-            self.cause[instances],
-            self.segment[instances],
-            self.joint[instances],
-            self.fraction[instances],
-            self.steps[instances],
+            self.cause[index],
+            self.segment[index],
+            self.joint[index],
+            self.fraction[index],
+            self.steps[index],
             self.trace,
         )
 
@@ -138,7 +138,7 @@ def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-
             continue
         busy += 1
         lanes[i, STEPS] += 1
-        traced = len(answers.trace.count) > 0 and b[at(ACCEPTED, i)] != 0.0
+        traced = len(answers.trace.steps) > 0 and b[at(ACCEPTED, i)] != 0.0
         if traced:
             segment = lanes[i, GUIDE] - problem.first[lanes[i, DEMONSTRATION]]
             trace_step(

@@ -34,7 +34,7 @@ class Trace(NamedTuple):
     """Accepted steps of plans, each instance planned with one demonstration.
 
     Attributes:
-        count: (N,) how many steps each plan has; (0,) if no trace is kept.
+        steps: (N,) how many each plan takes; (0,) if no trace is kept.
         first: (N + 1,) where the steps of each plan begin; those that find no place are counted.
         segment: (T,) the segment that a step lies in, from 0.
         s: (T, 2) at its start and its end; 1 at both in a correction at a segment's end.
@@ -43,7 +43,7 @@ class Trace(NamedTuple):
             at all stages, each times the step.
     """
 
-    count: Index
+    steps: Index
     first: Index
     segment: Index
     s: Array
@@ -55,16 +55,16 @@ def new_trace(places: Index, n: int) -> Trace:
     """A trace for N plans of an arm of n joints, with a number (N,) of places for each."""
     first = np.cumsum([0, *places], dtype=np.int64)
     T = int(first[-1])
-    count = np.zeros(len(places), dtype=np.int64)
+    steps = np.zeros(len(places), dtype=np.int64)
     segment, q = np.zeros(T, dtype=np.int64), np.zeros((T, 5, n))
-    return Trace(count, first, segment, np.zeros((T, 2)), np.zeros(T), q)
+    return Trace(steps, first, segment, np.zeros((T, 2)), np.zeros(T), q)
 
 
 @njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def trace_step(b, i, rows, plan, segment, correction, trace):  # type: ignore[no-untyped-def]
     """Writes down a lane's step, if there is a place left for it; counts it in any case."""
-    k = trace.first[plan] + trace.count[plan]
-    trace.count[plan] += 1
+    k = trace.first[plan] + trace.steps[plan]
+    trace.steps[plan] += 1
     if k >= trace.first[plan + 1]:
         return
     n, step = rows.q_stage - rows.q, b[at(STEP, i)]
@@ -89,6 +89,6 @@ def trace_step(b, i, rows, plan, segment, correction, trace):  # type: ignore[no
 @njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def end_trace(plan, part, trace):  # type: ignore[no-untyped-def]
     """Writes down how much of its last step a plan goes along."""
-    k = trace.first[plan] + trace.count[plan] - 1
+    k = trace.first[plan] + trace.steps[plan] - 1
     if k < trace.first[plan + 1]:
         trace.part[k] = part
