@@ -44,9 +44,9 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
     },
     "recording_formats": {"folder": "drake_screw.demonstrations.library:read_recording"},
     "exporters": {
-        "baxter-csv": "drake_screw.execution.export:baxter_csv",
-        "ros-trajectory": "drake_screw.execution.export:ros_trajectory",
-        "npz": "drake_screw.execution.export:npz",
+        "baxter-csv": "drake_screw.execution.trajectory_formats:baxter_csv",
+        "ros-trajectory": "drake_screw.execution.trajectory_formats:ros_trajectory",
+        "npz": "drake_screw.execution.trajectory_formats:npz",
     },
 }
 """Where the parts of each group are defined; the first strategy is the default one."""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.screws import adjoint, exp
+from drake_screw.screws.rotations import skew
 from drake_screw.typing import Array
 
 
@@ -33,6 +35,34 @@ class ScrewChain:
     def n(self) -> int:
         """Number of joints."""
         return len(self.joint_names)
+
+    def motions(self, q: ArrayLike) -> Array:
+        """How every joint moves what lies behind it: exp(S_1 q_1) ... exp(S_i q_i) for every i.
+
+        For a unit twist exp(S q) is a polynomial in the matrix S with coefficients that depend on
+        q only (Modern Robotics, eq. 3.51 and 3.88), so all joints take one matrix product.
+
+        Args:
+            q: (N, n) rad or m.
+
+        Returns:
+            (n, N, 4, 4).
+        """
+        angle = np.asarray(q, dtype=float).T
+        one = np.ones_like(angle)
+        c = np.stack([one, angle, 1.0 - np.cos(angle), angle - np.sin(angle)], axis=-1)
+        E = (c @ self._powers).reshape(*angle.shape, 4, 4)
+        for i in range(1, len(E)):
+            E[i] = E[i - 1] @ E[i]
+        return E
+
+    @cached_property
+    def _powers(self) -> Array:
+        """(n, 4, 16) the powers 0 to 3 of each screw as a matrix."""
+        S = np.zeros((self.n, 4, 4))
+        S[:, :3, :3], S[:, :3, 3] = skew(self.screws[:, :3]), self.screws[:, 3:]
+        powers = np.stack([np.broadcast_to(np.eye(4), S.shape), S, S @ S, S @ S @ S], axis=1)
+        return powers.reshape(self.n, 4, 16)
 
     @property
     def shoulder(self) -> Array:

@@ -11,7 +11,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.execution import build_station, recording_html
-from drake_screw.execution.batch import Job, StationConfig, execute_all
+from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, summary, trials_csv
 from drake_screw.files import fresh_folder, write_folder
 from drake_screw.planning import Cause, Outcomes, concatenate
@@ -70,11 +70,17 @@ def execute(
         x_y_yaw = placed(setup, instance)[None]
         outcomes = plan(x_y_yaw)
     X_WO = setup.area.X_WO(x_y_yaw)
-    by = np.argmax(outcomes.success, axis=1)
-    solved = np.flatnonzero(outcomes.any_success).tolist()
-    jobs = [Job(demonstrations[by[i]].transfer(X_WO[i]), X_WO[i]) for i in solved]
+    by = outcomes.best_attempt
+    solved = np.flatnonzero(outcomes.any_success)
+    plans = setup.batch_planner.plans(
+        demonstrations, X_WO[solved], setup.workcell.start, by[solved]
+    )
+    jobs = [
+        Job(plan, demonstrations[by[i]].transfer(X_WO[i]), X_WO[i])
+        for i, plan in zip(solved, plans, strict=True)
+    ]
     config = StationConfig(setup.robot, setup.table, setup.objects)
-    done = dict(zip(solved, execute_all(config, jobs, workers=workers), strict=True))
+    done = dict(zip(solved.tolist(), execute_all(config, jobs, workers=workers), strict=True))
     trials = []
     for i, place in enumerate(x_y_yaw):
         execution = done.get(i)
@@ -82,8 +88,6 @@ def execute(
         why = ""
         if i not in done:
             why = why_not(outcomes[i], demonstrations, X_WO[i], planner, setup)
-        elif execution is None:
-            why = "the reference planner finds none"
         region = int(setup.regions.index(place))
         trials.append(Trial(region, place, name, why, execution))
     text = summary(trials)
@@ -187,9 +191,7 @@ def why_not(
     planner: CollisionFreePlanner,
     setup: Setup,
 ) -> str:
-    """Why no demonstration solves an instance, by the attempt that got farthest.
-
-    A plan that keeps the limits all the way but collides has got farther than any that does not.
+    """Why no demonstration solves an instance, by the best attempt.
 
     Args:
         outcomes: (D,).
@@ -198,16 +200,16 @@ def why_not(
         planner: that gave the outcomes.
         setup: of the scenario.
     """
-    collides = outcomes.cause == Cause.COLLISION
-    best = int(np.lexsort((outcomes.fraction, outcomes.segment, collides))[-1])
+    best = int(outcomes.best_attempt)
     cause, segment = Cause(int(outcomes.cause[best])), int(outcomes.segment[best]) + 1
-    name = demonstrations[best].name
+    chosen, start = demonstrations[best], setup.workcell.start
+    name = chosen.name
     match cause:
         case Cause.JOINT_LIMIT:
             joint = setup.workcell.arm.joint_names[int(outcomes.joint[best])]
             return f"with {name}, {joint} meets its limit in segment {segment}"
         case Cause.COLLISION:
-            hit = planner.checker.explain(demonstrations[best], X_WO, setup.workcell.start)
+            hit = planner.checker.explain(planner.planner.plan(chosen, X_WO, start), X_WO)
             return f"with {name}, {hit}"
         case _:
             return f"with {name}, segment {segment} is out of reach"

@@ -5,10 +5,8 @@ from __future__ import annotations
 import zlib
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from zipfile import BadZipFile
-
-import numpy as np
 
 from drake_screw.acquisition import (
     DemonstrationAdded,
@@ -26,15 +24,12 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.planning import Cause, Outcomes, ReferencePlanner
+from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.codec import REMEDY, load_evaluation
 from drake_screw.runs.directory import INSTANCES, RunDirectory
 from drake_screw.visualization.attempt import Attempt, attempt, cut_short
 from drake_screw.visualization.browsing import Catalogue, catalogue
 from drake_screw.visualization.rounds import cells
-
-STEP = 0.02
-"""Of the reference planner; twice its usual one, which outcomes hardly feel."""
 
 
 class RunReader:
@@ -54,11 +49,6 @@ class RunReader:
         self.event = lru_cache(maxsize=8)(self._event)
         self.catalogue = lru_cache(maxsize=8)(self._catalogue)
         self.attempt = lru_cache(maxsize=64)(self._attempt)
-
-    @cached_property
-    def planner(self) -> ReferencePlanner:
-        """Plans attempts again."""
-        return ReferencePlanner(self.setup.workcell.arm, step=STEP)
 
     @property
     def rounds(self) -> int:
@@ -228,12 +218,8 @@ class RunReader:
 
     def best(self, round: int, instance: int) -> int | None:
         """The demonstration that comes furthest at an instance."""
-        outcomes = self.outcomes(round, instance)
-        if outcomes.shape[0] == 0:
-            return None
-        progress = outcomes.segment + np.clip(outcomes.fraction.astype(float), 0.0, 0.999)
-        progress = np.where(outcomes.cause == Cause.NOT_TRIED, -1.0, progress)
-        return int(np.where(outcomes.success, np.inf, progress).argmax())
+        best = int(self.outcomes(round, instance).best_attempt)
+        return None if best < 0 else best
 
     def attempts(self, round: int, instance: int) -> list[Attempt]:
         """All demonstrations of a round tried at an instance."""
@@ -244,8 +230,9 @@ class RunReader:
         """One demonstration tried at an instance, cut short where the run saw a collision."""
         event = self.event(round)
         X_WO = self.setup.area.X_WO(event.evaluation.x_y_yaw[instance])
-        start, workcell = self.setup.workcell.start, self.setup.workcell
-        tried = attempt(self.planner, number, event.demonstrations[number], X_WO, start)
+        workcell, demonstration = self.setup.workcell, event.demonstrations[number]
+        plan = self.setup.batch_planner.plan(demonstration, X_WO, workcell.start)
+        tried = attempt(workcell.arm, number, demonstration, X_WO, plan)
         found = event.evaluation.outcomes[instance][number]
         if int(found.cause) == Cause.COLLISION and int(tried.cause) != Cause.COLLISION:
             tried = replace(tried, plan=cut_short(tried.plan, found))

@@ -15,9 +15,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
-from drake_screw.planning import ReferencePlanner
 from drake_screw.runs.narration import place
-from drake_screw.runs.reader import STEP
 from drake_screw.screws import exp, log, pose
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import Attempt, attempt, describe_segment, headline, unit
@@ -58,7 +56,6 @@ class TeachingSession:
     ) -> None:
         self._setup, self._inspector, self._number = setup, inspector, number
         self._suggestion = suggestion
-        self._planner = ReferencePlanner(setup.workcell.arm, step=STEP)
         self._X_WO = setup.area.X_WO(suggestion.x_y_yaw)
         self._X_WE_start = setup.workcell.arm.pose(setup.workcell.start)
         self.over = False
@@ -218,8 +215,9 @@ class TeachingSession:
     def _offer(self, recording: Recording) -> None:
         """Cut a recording into screws and plan the suggested instance with it."""
         demonstration = self._setup.learn(recording)
-        start = self._setup.workcell.start
-        tried = attempt(self._planner, self._number, demonstration, self._X_WO, start)
+        workcell = self._setup.workcell
+        plan = self._setup.batch_planner.plan(demonstration, self._X_WO, workcell.start)
+        tried = attempt(workcell.arm, self._number, demonstration, self._X_WO, plan)
         self._inspector.draw(tried)
         self._segments = _segment_lines(tried)
         self._message = (

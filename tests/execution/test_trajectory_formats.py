@@ -11,7 +11,7 @@ import yaml
 from drake_screw.demonstrations import read_recording
 from drake_screw.demonstrations.baxter_csv import COLUMNS
 from drake_screw.execution import FORMATS
-from drake_screw.execution.export import PERIOD
+from drake_screw.execution.trajectory_formats import PERIOD
 
 
 def test_baxter_csv_round_trips_through_our_reader(timed, arm, tmp_path):

@@ -12,24 +12,25 @@ import numpy as np
 
 from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
-from drake_screw.execution.timing import TimedPlan, TimeLimits, time_plan
-from drake_screw.planning import Plan, ReferencePlanner
-from drake_screw.robot import Arm, ObjectConfig, RobotConfig, TableConfig
+from drake_screw.execution.timing import TimeLimits, time_plan
+from drake_screw.planning import Plan
+from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
 from drake_screw.typing import Array
 
-PLAN_STEP = 0.02  # of the reference planner
 KEPT = 8  # of that many samples of a log, one comes back from another process
 
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """Something to plan and execute.
+    """Something to execute.
 
     Attributes:
-        guides: (g, 4, 4) guiding poses X_WE.
+        plan: one that succeeded.
+        guides: (g, 4, 4) its guiding poses X_WE.
         X_WO: (k, 4, 4) where the objects are.
     """
 
+    plan: Plan
     guides: Array
     X_WO: Array
 
@@ -53,21 +54,10 @@ class StationConfig:
         return build_station(self.robot, table=self.table, objects=self.objects)
 
 
-def plan_and_time(
-    arm: Arm, q_start: Sequence[float], guides: Array, limits: TimeLimits
-) -> tuple[Plan, TimedPlan | None]:
-    """A plan through guiding poses (g, 4, 4), and its time law if it succeeds."""
-    plan = ReferencePlanner(arm, step=PLAN_STEP).plan(q_start, guides)
-    if not plan.success:
-        return plan, None
-    poses = np.concatenate([arm.pose(plan.q[:1]), guides])
-    return plan, time_plan(plan, poses, arm, limits)
-
-
 def execute_all(
     config: StationConfig, jobs: Sequence[Job], *, workers: int | None = None
-) -> Iterator[Execution | None]:
-    """Plan and simulate jobs.
+) -> Iterator[Execution]:
+    """Time and simulate plans.
 
     Args:
         config: the station that each process builds once.
@@ -75,8 +65,7 @@ def execute_all(
         workers: number of processes; as many as processors if None, none but this one if 1.
 
     Yields:
-        The execution of each job, in order, thinned out; None where the reference planner finds
-        no plan.
+        The execution of each job, in order, thinned out.
     """
     workers = min(workers or len(os.sched_getaffinity(0)), len(jobs))
     if workers <= 1:
@@ -95,15 +84,14 @@ def _start(config: StationConfig) -> None:
     _here.append((config.build(), config))
 
 
-def _execute_here(job: Job) -> Execution | None:
+def _execute_here(job: Job) -> Execution:
     station, config = _here[-1]
     return _execute(station, config, job)
 
 
-def _execute(station: Station, config: StationConfig, job: Job) -> Execution | None:
-    _, timed = plan_and_time(station.arm, config.robot.start, job.guides, config.limits)
-    if timed is None:
-        return None
+def _execute(station: Station, config: StationConfig, job: Job) -> Execution:
+    poses = np.concatenate([station.arm.pose(job.plan.q[:1]), job.guides])
+    timed = time_plan(job.plan, poses, station.arm, config.limits)
     done = simulate(station, timed, job.X_WO)
     kept = np.append(np.arange(0, len(done.t) - 1, KEPT), len(done.t) - 1)
     return replace(
