@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -14,6 +12,7 @@ from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
 from drake_screw.execution.timing import TimeLimits, time_plan
 from drake_screw.planning import Plan
+from drake_screw.processes import share_out
 from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
 from drake_screw.typing import Array
 
@@ -56,7 +55,7 @@ class StationConfig:
 
 def execute_all(
     config: StationConfig, jobs: Sequence[Job], *, workers: int | None = None
-) -> Iterator[Execution]:
+) -> tuple[Execution, ...]:
     """Time and simulate plans.
 
     Args:
@@ -64,34 +63,25 @@ def execute_all(
         jobs: what to do.
         workers: number of processes; as many as processors if None, none but this one if 1.
 
-    Yields:
+    Returns:
         The execution of each job, in order, thinned out.
+
+    Raises:
+        WorkerLost: a process was killed.
     """
-    workers = min(workers or len(os.sched_getaffinity(0)), len(jobs))
-    if workers <= 1:
-        station = config.build()
-        yield from (_execute(station, config, job) for job in jobs)
-        return
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, context, _start, (config,)) as pool:
-        yield from pool.map(_execute_here, jobs)
+    shared = share_out(_execute, jobs, build=partial(_bench, config), workers=workers)
+    done = dict(shared)
+    return tuple(done[place] for place in range(len(jobs)))
 
 
-_here: list[tuple[Station, StationConfig]] = []
+def _bench(config: StationConfig) -> tuple[Station, TimeLimits]:
+    return config.build(), config.limits
 
 
-def _start(config: StationConfig) -> None:
-    _here.append((config.build(), config))
-
-
-def _execute_here(job: Job) -> Execution:
-    station, config = _here[-1]
-    return _execute(station, config, job)
-
-
-def _execute(station: Station, config: StationConfig, job: Job) -> Execution:
+def _execute(bench: tuple[Station, TimeLimits], job: Job) -> Execution:
+    station, limits = bench
     poses = np.concatenate([station.arm.pose(job.plan.q[:1]), job.guides])
-    timed = time_plan(job.plan, poses, station.arm, config.limits)
+    timed = time_plan(job.plan, poses, station.arm, limits)
     done = simulate(station, timed, job.X_WO)
     kept = np.append(np.arange(0, len(done.t) - 1, KEPT), len(done.t) - 1)
     return replace(
