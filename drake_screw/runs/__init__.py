@@ -1,0 +1,1 @@
+"""Runs: carried out, kept in a directory, read and summed up again."""
