@@ -119,7 +119,7 @@ def save_distributions(
     return save_figure(distributions_figure(distributions, scenario=scenario), stem)
 
 
-def pocket_figure(
+def comparison_figure(
     rounds: tuple[Round, Round],
     regions: tuple[GridRegions, GridRegions],
     *,
@@ -164,7 +164,7 @@ def pocket_figure(
     return figure
 
 
-def save_pocket(
+def save_comparison(
     rounds: tuple[Round, Round],
     regions: tuple[GridRegions, GridRegions],
     stem: str | Path,
@@ -172,8 +172,8 @@ def save_pocket(
     scenario: str = "",
     note: str = "",
 ) -> tuple[Path, Path]:
-    """Write `pocket_figure` as ``<stem>.png`` and ``<stem>.svg``."""
-    return save_figure(pocket_figure(rounds, regions, scenario=scenario, note=note), stem)
+    """Write `comparison_figure` as ``<stem>.png`` and ``<stem>.svg``."""
+    return save_figure(comparison_figure(rounds, regions, scenario=scenario, note=note), stem)
 
 
 def _headline(event: Round, regions: GridRegions) -> str:

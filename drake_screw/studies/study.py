@@ -10,24 +10,23 @@ were shared out.
 from __future__ import annotations
 
 import json
-import os
 import platform
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
-from functools import cached_property
+from functools import cached_property, partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.scenario.loader import dump_scenario, load_scenario
-from drake_screw.studies.pockets import draw_pocket
+from drake_screw.studies.hidden_failures import draw_hidden_failure
+from drake_screw.processes import WorkerLost, share_out
 from drake_screw.runs.directory import SCENARIO, file_hash, write_text
 from drake_screw.scenario.schema import Scenario
-from drake_screw.studies.pool import results
 from drake_screw.studies.experiment import Experiment, StudyRun, split
-from drake_screw.studies.table import HEADER, csv_text, read_runs, row
+from drake_screw.studies.table import HEADER, csv_text, read_runs, row, summary_csv
 from drake_screw.studies.figures import Distribution, save_distributions
 
 FORMAT = 1
@@ -90,10 +89,9 @@ class Study:
         done = {(run.K, run.run) for run in finished}
         missing = [(K, i) for i in range(self.runs) for K in self.regions if (K, i) not in done]
         self._save("running")
-        scenario = self.path / SCENARIO
         try:
             with table.open("a") as lines:
-                for run in results(self.experiment, scenario, missing, workers or os.cpu_count()):
+                for run in self._results(missing, workers):
                     lines.write(csv_text([row(run)]))
                     lines.flush()
                     yield run
@@ -115,13 +113,30 @@ class Study:
             if of_K
         }
 
+    def _results(self, missing: Sequence[tuple[int, int]], workers: int | None) -> Iterator[StudyRun]:
+        """Runs as they are finished; the arm's code is compiled here, and only once."""
+        first = int(not self.experiment.setup.batch_planner.compiled)
+        for K, run in missing[:first]:
+            yield self.experiment.run(K, run)
+        build = partial(_experiment, self.path / SCENARIO) if workers != 1 else lambda: self.experiment
+        shared = share_out(_carry_out, missing[first:], build=build, workers=workers)
+        try:
+            for _, finished in shared:
+                yield finished
+        except WorkerLost as error:
+            raise RunDirectoryError(
+                f"{error.message}; this study is not finished",
+                remedy="Carry it on with --resume and fewer --workers.",
+                file=self.path,
+            ) from error
+
     def _conclude(self) -> None:
         runs, summary = self.finished_runs(), self.summary()
         write_text(self.path / RUNS, csv_text([HEADER, *map(row, runs)]))
-        write_text(self.path / SUMMARY, _summary_csv(summary))
+        write_text(self.path / SUMMARY, summary_csv(summary))
         name = self.scenario.name
         save_distributions(summary, self.path / "distributions", scenario=name)
-        draw_pocket(self.experiment, runs, self.path / "hidden_pocket")
+        draw_hidden_failure(self.experiment, runs, self.path / "hidden_pocket")
         self._save(FINISHED)
 
     def _save(self, status: str) -> None:
@@ -252,19 +267,6 @@ def numbers_of_regions(text: str) -> tuple[int, ...]:
         ) from error
 
 
-def _summary_csv(summary: dict[int, Distribution]) -> str:
-    rows: list[tuple[object, ...]] = [
-        ("K", "demonstrations", "runs", "probability", "mean", "max", "not_certified")
-    ]
-    for K, found in summary.items():
-        ends = f"{found.mean:.6g}", found.most, found.without
-        rows += [
-            (K, number, count, f"{count / found.runs:.6g}", *ends)
-            for number, count in found.counts.items()
-        ]
-    return csv_text(rows)
-
-
 def _fresh(parent: Path) -> Path:
     stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
     path, count = parent / stamp, 1
@@ -276,3 +278,11 @@ def _fresh(parent: Path) -> Path:
 
 def _now() -> str:
     return datetime.now().astimezone().isoformat(timespec="seconds")
+
+
+def _experiment(scenario: Path) -> Experiment:
+    return Experiment(load_scenario(scenario))
+
+
+def _carry_out(experiment: Experiment, job: tuple[int, int]) -> StudyRun:
+    return experiment.run(*job)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 
 from drake_screw.errors import RunDirectoryError
 from drake_screw.studies.experiment import StudyRun
+from drake_screw.studies.figures import Distribution
 
 HEADER = tuple(field.name for field in fields(StudyRun))
 
@@ -42,6 +43,20 @@ def read_runs(file: Path) -> tuple[StudyRun, ...]:
         raise RunDirectoryError(
             f"damaged: {error}", remedy="Restore it, or begin the study again.", file=file
         ) from error
+
+
+def summary_csv(summary: Mapping[int, Distribution]) -> str:
+    """How many demonstrations runs needed: a row for each K and number of demonstrations."""
+    rows: list[tuple[object, ...]] = [
+        ("K", "demonstrations", "runs", "probability", "mean", "max", "not_certified")
+    ]
+    for K, found in summary.items():
+        ends = f"{found.mean:.6g}", found.most, found.without
+        rows += [
+            (K, number, count, f"{count / found.runs:.6g}", *ends)
+            for number, count in found.counts.items()
+        ]
+    return csv_text(rows)
 
 
 def _parsed(cells: list[str]) -> StudyRun:

@@ -12,9 +12,9 @@ from drake_screw.studies.figures import (
     Distribution,
     distributions_figure,
     draw_distribution,
-    pocket_figure,
+    comparison_figure,
     save_distributions,
-    save_pocket,
+    save_comparison,
 )
 from drake_screw.tasks import WorkArea, grid_regions
 
@@ -73,9 +73,9 @@ def pair(make_round):
     return rounds, (coarse, fine)
 
 
-def test_a_pocket_is_seen_beside_the_whole(pair):
+def test_a_hidden_failure_is_seen_beside_the_whole(pair):
     rounds, regions = pair
-    figure = pocket_figure(rounds, regions, scenario="pouring", note="17 of 20 runs")
+    figure = comparison_figure(rounds, regions, scenario="pouring", note="17 of 20 runs")
     left, right, _ = figure.get_axes()
     cells = [sum(str(p.get_gid()).startswith("cell") for p in ax.patches) for ax in (left, right)]
     assert cells == [1, 6]
@@ -89,7 +89,7 @@ def test_a_pocket_is_seen_beside_the_whole(pair):
 def test_files_are_the_same_bytes_every_time(pair, tmp_path):
     for name in ("a", "b"):
         save_distributions({1: FOUND}, tmp_path / f"d_{name}", scenario="s")
-        save_pocket(*pair, tmp_path / f"p_{name}", scenario="s")
+        save_comparison(*pair, tmp_path / f"p_{name}", scenario="s")
     for kind in ("d", "p"):
         for end in ("png", "svg"):
             first, second = (tmp_path / f"{kind}_{name}.{end}" for name in ("a", "b"))

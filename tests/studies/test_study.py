@@ -17,7 +17,7 @@ from drake_screw.demonstrations import write_recording
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.studies.experiment import Experiment, run_seed, split
-from drake_screw.studies.pockets import EACH, find_pockets
+from drake_screw.studies.hidden_failures import EACH, find_hidden_failures
 from drake_screw.studies.study import (
     RUNS,
     STUDY,
@@ -165,21 +165,21 @@ def test_workers_make_no_difference(scenario, finished, tmp_path):
     assert (study.path / RUNS).read_bytes() == (finished.path / RUNS).read_bytes()
 
 
-def test_pockets_are_of_the_demonstrations_that_few_regions_certified(finished):
+def test_hidden_failures_are_of_the_demonstrations_that_few_regions_certified(finished):
     runs = finished.finished_runs()
-    pockets = find_pockets(finished.experiment, runs)
+    found = find_hidden_failures(finished.experiment, runs)
     names = [run.names for run in runs if run.K == 1 and run.certified]
-    assert len(pockets) == len(names) > 0
-    assert [p.worst for p in pockets] == sorted(p.worst for p in pockets)
-    for pocket in pockets:
-        assert tuple(d.name for d in pocket.fine.demonstrations) in names
-        assert pocket.coarse.verdict.certified
-        assert pocket.fine.verdict.samples.tolist() == [EACH] * 4
-        whole = pocket.fine.verdict.estimates.mean()
-        assert whole <= pocket.worst
-        assert pocket.fine.verdict.certified == (pocket.fine.verdict.coverage >= 0.7)
+    assert len(found) == len(names) > 0
+    assert [p.worst for p in found] == sorted(p.worst for p in found)
+    for one in found:
+        assert tuple(d.name for d in one.fine.demonstrations) in names
+        assert one.coarse.verdict.certified
+        assert one.fine.verdict.samples.tolist() == [EACH] * 4
+        whole = one.fine.verdict.estimates.mean()
+        assert whole <= one.worst
+        assert one.fine.verdict.certified == (one.fine.verdict.coverage >= 0.7)
     few = [run for run in runs if run.K == 4]
-    assert find_pockets(finished.experiment, few) == ()
+    assert find_hidden_failures(finished.experiment, few) == ()
 
 
 def test_the_terminal_shows_every_K(finished):

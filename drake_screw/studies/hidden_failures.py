@@ -14,7 +14,7 @@ from drake_screw.bandits.mixture import confidence_interval
 from drake_screw.demonstrations import Demonstration
 from drake_screw.studies.experiment import Experiment, StudyRun, run_seed, split
 from drake_screw.tasks import GridRegions, draw
-from drake_screw.studies.figures import save_pocket
+from drake_screw.studies.figures import save_comparison
 
 MOST_RUNS = 20
 EACH = 1024
@@ -22,7 +22,7 @@ EACH = 1024
 
 
 @dataclass(frozen=True, eq=False)
-class Pocket:
+class HiddenFailure:
     """One certified run, and how its demonstrations do in smaller regions.
 
     Attributes:
@@ -42,35 +42,35 @@ class Pocket:
         return float(self.fine.verdict.estimates.max())
 
 
-def find_pockets(experiment: Experiment, runs: Sequence[StudyRun]) -> tuple[Pocket, ...]:
+def find_hidden_failures(experiment: Experiment, runs: Sequence[StudyRun]) -> tuple[HiddenFailure, ...]:
     """The first certified runs of the least K, evaluated with the greatest, the mildest first."""
     least, greatest = min(run.K for run in runs), max(run.K for run in runs)
     chosen = [run for run in runs if run.certified and least >= run.K][:MOST_RUNS]
     if least == greatest:
         return ()
-    pockets = [_pocket(experiment, run, greatest) for run in chosen]
-    return tuple(sorted(pockets, key=lambda pocket: pocket.worst))
+    found = [_seen_closely(experiment, run, greatest) for run in chosen]
+    return tuple(sorted(found, key=lambda one: one.worst))
 
 
-def draw_pocket(experiment: Experiment, runs: Sequence[StudyRun], stem: Path) -> None:
-    """Draw the worst of `find_pockets` as ``<stem>.png`` and ``<stem>.svg``, if there is one.
+def draw_hidden_failure(experiment: Experiment, runs: Sequence[StudyRun], stem: Path) -> None:
+    """Draw the worst of `find_hidden_failures` as ``<stem>.png`` and ``<stem>.svg``, if there is one.
 
     The picture says in how many of those runs a region fails more often than 1 - beta, and how
     often it fails in the middle one.
     """
-    pockets = find_pockets(experiment, runs)
-    if not pockets:
+    found = find_hidden_failures(experiment, runs)
+    if not found:
         return
     setup = experiment.setup
-    hidden = sum(pocket.worst > setup.goal.tau for pocket in pockets)
-    middle, shown = pockets[len(pockets) // 2], pockets[-1]
+    hidden = sum(one.worst > setup.goal.tau for one in found)
+    middle, shown = found[len(found) // 2], found[-1]
     K = shown.coarse_regions.K, shown.fine_regions.K
     note = (
-        f"{hidden} of {len(pockets)} runs certified with K = {K[0]} leave a region of K = {K[1]} "
+        f"{hidden} of {len(found)} runs certified with K = {K[0]} leave a region of K = {K[1]} "
         f"that fails more than {setup.goal.tau:.0%} of the time. The worst such region is shown; "
         f"in the middle one of these runs it fails {middle.worst:.0%}."
     )
-    save_pocket(
+    save_comparison(
         (shown.coarse, shown.fine),
         (shown.coarse_regions, shown.fine_regions),
         stem,
@@ -79,13 +79,13 @@ def draw_pocket(experiment: Experiment, runs: Sequence[StudyRun], stem: Path) ->
     )
 
 
-def _pocket(experiment: Experiment, run: StudyRun, K: int) -> Pocket:
+def _seen_closely(experiment: Experiment, run: StudyRun, K: int) -> HiddenFailure:
     setup = experiment.setup
     rounds = [e for e in experiment.events(run.K, run.run) if isinstance(e, RoundFinished)]
     last = rounds[-1]
     regions = split(setup.area, K)
     seed = run_seed(setup.scenario.seed, 0, run.run)
-    return Pocket(
+    return HiddenFailure(
         last,
         split(setup.area, run.K),
         evenly(experiment, last.demonstrations, regions, seed),

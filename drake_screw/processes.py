@@ -1,0 +1,96 @@
+"""Work shared out among processes, each of which builds what it needs once.
+
+Drake's plants do not travel between processes. So what travels is how to build what the work needs,
+and the jobs; the answers come back as they are finished.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import get_context
+from typing import Any, TypeVar
+
+from drake_screw.errors import DrakeScrewError
+
+_Tool = TypeVar("_Tool")
+_Job = TypeVar("_Job")
+_Answer = TypeVar("_Answer")
+
+
+class WorkerLost(DrakeScrewError):
+    """A process that shared the work was killed."""
+
+
+_here: list[Any] = []
+"""What this process built, if it was started here."""
+
+
+def share_out(
+    work: Callable[[_Tool, _Job], _Answer],
+    jobs: Sequence[_Job],
+    *,
+    build: Callable[[], _Tool],
+    workers: int | None = None,
+) -> Iterator[tuple[int, _Answer]]:
+    """Do jobs in several processes.
+
+    Args:
+        work: does one job with what `build` makes; a function of a module.
+        jobs: what to do; they and the answers are pickled.
+        build: makes what the work needs, once in each process; pickled, so a function of a module,
+            or a `functools.partial` of one.
+        workers: processes; as many as processors if None. With 1, or a single job, everything is
+            done in this one.
+
+    Yields:
+        The place of each job in `jobs` and its answer, as they are finished, in any order.
+
+    Raises:
+        WorkerLost: a process was killed. Whatever a job raises ends the work, too.
+    """
+    workers = min(workers or len(os.sched_getaffinity(0)), len(jobs))
+    if workers <= 1:
+        if jobs:
+            tool = build()
+            for place, job in enumerate(jobs):
+                yield place, work(tool, job)
+        return
+    pool = ProcessPoolExecutor(workers, get_context("spawn"), _begin, (build,))
+    with pool:
+        with _ctrl_c_held():
+            places = {pool.submit(_work, work, job): place for place, job in enumerate(jobs)}
+        try:
+            for done in as_completed(places):
+                yield places[done], done.result()
+        except BrokenProcessPool as error:
+            raise WorkerLost(
+                "a process that shared the work was killed; memory may have run out",
+                remedy="Give fewer --workers.",
+            ) from error
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _begin(build: Callable[[], Any]) -> None:
+    logging.getLogger("drake").setLevel(logging.WARNING)
+    _here.append(build())
+
+
+def _work(work: Callable[[Any, Any], Any], job: Any) -> Any:
+    return work(_here[0], job)
+
+
+@contextmanager
+def _ctrl_c_held() -> Iterator[None]:
+    """Processes started meanwhile never see Ctrl-C: they end when this one tells them to."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
