@@ -10,7 +10,6 @@ import typer
 from drake_screw.commands.options import VerboseOption
 from drake_screw.commands.output import Output
 from drake_screw.errors import DrakeScrewError, ScenarioError, unknown
-from drake_screw.resources import SCENARIO_SUFFIXES, find_resource, list_resources
 
 EXAMPLE = "drake-screw init pouring --output mine.yaml"
 
@@ -31,6 +30,8 @@ def init(
 
     It is a copy of a shipped one, in which every key is explained.
     """
+    from drake_screw.resources import SCENARIO_SUFFIXES, find_resource, list_resources
+
     shipped = list_resources("scenarios", SCENARIO_SUFFIXES)
     if name not in shipped:
         message, remedy = unknown("scenario", name, "what is shipped", shipped)

@@ -9,12 +9,6 @@ from xml.etree import ElementTree
 
 from drake_screw.commands.options import JsonOption, VerboseOption
 from drake_screw.commands.output import Output
-from drake_screw.resources import (
-    MODEL_SUFFIXES,
-    SCENARIO_SUFFIXES,
-    find_resource,
-    list_resources,
-)
 
 EXAMPLE = "drake-screw list"
 
@@ -65,6 +59,12 @@ def list_shipped(json: JsonOption = None, verbose: VerboseOption = False) -> Non
 
 def shipped() -> Shipped:
     """What is shipped, by name."""
+    from drake_screw.resources import (
+        MODEL_SUFFIXES,
+        SCENARIO_SUFFIXES,
+        find_resource,
+        list_resources,
+    )
     from drake_screw.scenario.loader import load_scenario
 
     scenarios = [load_scenario(name) for name in list_resources("scenarios", SCENARIO_SUFFIXES)]
