@@ -20,7 +20,7 @@ from drake_screw.acquisition import (
 )
 from drake_screw.bandits import Verdict
 from drake_screw.runs.narration import describe
-from drake_screw.runs.run import Run
+from drake_screw.runs.summary import RunSummary
 from drake_screw.tasks import Regions
 
 _ROWS = 24
@@ -74,19 +74,17 @@ def show_event(event: Event, regions: Regions, console: Console) -> None:
         console.print(round_table(event.verdict, event.regions))
 
 
-def show_certificate(run: Run, console: Console) -> None:
+def show_summary(summary: RunSummary, console: Console) -> None:
     """The statement a finished run makes, and where to find the rest."""
-    stated = run.certificate
-    assert stated is not None
     console.print(
         Panel(
-            Text("\n".join(stated.statement)),
-            title="certificate" if stated.certified else "no certificate",
-            border_style="green" if stated.certified else "yellow",
+            Text("\n".join(summary.statement)),
+            title="certificate" if summary.certified else "no certificate",
+            border_style="green" if summary.certified else "yellow",
             title_align="left",
         )
     )
-    console.print(Text(f"run directory: {run.directory.path}"), soft_wrap=True)
+    console.print(Text(f"run directory: {summary.directory}"), soft_wrap=True)
 
 
 def round_table(verdict: Verdict, regions: Regions) -> Table:

@@ -9,10 +9,8 @@ from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan, TimeLimits, time_plan
-from drake_screw.execution.trajectory_formats import FORMATS
 
 __all__ = [
-    "FORMATS",
     "Contact",
     "Control",
     "Deviation",

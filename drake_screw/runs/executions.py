@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +13,13 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
-from drake_screw.execution.trials import Trial, summary, trials_csv
+from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder
 from drake_screw.planning import Cause, Outcomes, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.runs.run import Run, open_run
 from drake_screw.tasks import draw
-from drake_screw.typing import Array
+from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.lifetime import scratch
 
 ROUND = 1_000_000
@@ -28,13 +29,29 @@ TRIES = 20  # times as many instances are drawn in a region at most as are wante
 SHOWN = 4  # executions in the recording
 
 
+@dataclass(frozen=True)
+class Executions:
+    """Executions of a run; as text they are what ``drake-screw execute`` prints.
+
+    Attributes:
+        folder: with table, summary and recording.
+        summary: what they show.
+    """
+
+    folder: Path
+    summary: TrialSummary
+
+    def __str__(self) -> str:
+        return f"{self.summary}\nwritten to {self.folder}"
+
+
 def execute(
-    run: Path,
+    run: PathLike,
     *,
     per_region: int = 2,
     instance: Sequence[float] | None = None,
     workers: int | None = None,
-) -> str:
+) -> Executions:
     """Plan, simulate and report executions of a run.
 
     Every instance is planned with the run's demonstrations, the nearest first, until one gives a
@@ -47,9 +64,6 @@ def execute(
             reported.
         instance: x, y and perhaps yaw of each object: execute this one instead.
         workers: processes; as many as processors if None.
-
-    Returns:
-        A summary for people.
 
     Raises:
         DrakeScrewError: the run cannot be read or has no demonstrations, the instance is not one,
@@ -90,11 +104,11 @@ def execute(
             why = why_not(outcomes[i], demonstrations, X_WO[i], planner, setup)
         region = int(setup.regions.index(place))
         trials.append(Trial(region, place, name, why, execution))
-    text = summary(trials)
+    found = summarize(trials)
 
     def fill(folder: Path) -> None:
         (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
-        (folder / "summary.txt").write_text(text + "\n")
+        (folder / "summary.txt").write_text(f"{found}\n")
         shown = [
             (trial.execution, setup.area.X_WO(trial.x_y_yaw))
             for trial in _chosen(trials)
@@ -114,10 +128,10 @@ def execute(
             remedy="Executions are written beside the run; make its folder writable.",
             file=folder,
         ) from error
-    return f"{text}\nwritten to {folder}"
+    return Executions(folder, found)
 
 
-def station_graphviz(run: Path) -> str:
+def station_graphviz(run: PathLike) -> str:
     """The simulated diagram of a run as GraphViz text.
 
     Raises:

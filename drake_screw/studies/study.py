@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.files import file_hash, fresh_folder, write_text
+from drake_screw.files import csv_text, file_hash, fresh_folder, write_text
 from drake_screw.processes import WorkerLost, share_out
 from drake_screw.runs.directory import SCENARIO
 from drake_screw.scenario.loader import dump_scenario, load_scenario
@@ -28,7 +28,7 @@ from drake_screw.scenario.schema import Scenario
 from drake_screw.studies.experiment import Experiment, StudyRun, split
 from drake_screw.studies.figures import Distribution, save_distributions
 from drake_screw.studies.hidden_failures import draw_hidden_failure
-from drake_screw.studies.table import HEADER, csv_text, read_runs, row, summary_csv
+from drake_screw.studies.table import HEADER, read_runs, row, summary_csv
 
 FORMAT = 1
 STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"

@@ -11,7 +11,7 @@ import pytest
 
 from drake_screw.execution import Contact, ExecutionStatus, Phase, recording_html
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
-from drake_screw.execution.trials import Trial, summary, trials_csv
+from drake_screw.execution.trials import Trial, summarize, trials_csv
 from drake_screw.robot import ObjectConfig
 from drake_screw.screws import pose
 from drake_screw.tasks import ObjectArea, WorkArea
@@ -79,7 +79,7 @@ def test_the_table_has_a_row_for_each_trial(trials):
 
 
 def test_the_summary_counts_and_names_what_went_wrong(trials):
-    text = summary(trials)
+    text = str(summarize(trials))
     assert "3 instances, 2 executed" in text
     assert "done                       1 of 2" in text
     assert "with contact               1" in text
@@ -91,7 +91,7 @@ def test_the_summary_counts_and_names_what_went_wrong(trials):
 
 
 def test_nothing_executed_is_said_too(trials):
-    assert summary(trials[2:]).splitlines()[0] == "1 instances, 0 executed"
+    assert str(summarize(trials[2:])).splitlines()[0] == "1 instances, 0 executed"
 
 
 def test_the_recording_is_one_page_with_every_execution(config, executed):
