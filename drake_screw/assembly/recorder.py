@@ -29,7 +29,7 @@ from drake_screw.errors import ModelError, RecordingError
 from drake_screw.planning import Planner
 from drake_screw.robot import Arm, RobotConfig
 from drake_screw.robot.workcell import add_robot
-from drake_screw.scenario.schema import RecordedOnBlock
+from drake_screw.scenario.workcell_blocks import RecordedOnBlock
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from drake_screw.acquisition import Finished, Status
-from drake_screw.bandits.spending import attempt_delta
 from drake_screw.assembly.setup import Setup
+from drake_screw.bandits.spending import attempt_delta
 
 
 def certificate(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.execution import build_station, recording_html
@@ -15,7 +16,6 @@ from drake_screw.execution.batch import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, summary, trials_csv
 from drake_screw.planning import Cause, Outcomes, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
-from drake_screw.assembly.setup import Setup
 from drake_screw.runs.directory import write_folder
 from drake_screw.runs.run import Run, open_run
 from drake_screw.tasks import draw

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from drake_screw.acquisition import RoundFinished, Suggestion
+from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause, Outcomes, ReferencePlanner
-from drake_screw.assembly.setup import Setup
 from drake_screw.runs.directory import RunDirectory
 from drake_screw.runs.run import Run, open_run
 from drake_screw.visualization.attempt import Attempt, attempt, cut_short

@@ -22,19 +22,18 @@ from drake_screw.acquisition import (
     TreeEvaluator,
     acquire,
 )
+from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.runs.certificate import certificate
-from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.runs.directory import LOG, SCENARIO, RunDirectory, file_hash
 from drake_screw.runs.narration import describe
 from drake_screw.runs.pictures import draw_round, draw_run
-from drake_screw.runs.directory import LOG, SCENARIO, RunDirectory, file_hash
+from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
 from drake_screw.visualization.lifetime import scratch
-
 
 Listener = Callable[[Event], None]
 """Is called with the events of a run, in their order."""

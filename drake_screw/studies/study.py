@@ -20,14 +20,14 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.scenario.loader import dump_scenario, load_scenario
-from drake_screw.studies.hidden_failures import draw_hidden_failure
 from drake_screw.processes import WorkerLost, share_out
 from drake_screw.runs.directory import SCENARIO, file_hash, write_text
+from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.studies.experiment import Experiment, StudyRun, split
-from drake_screw.studies.table import HEADER, csv_text, read_runs, row, summary_csv
 from drake_screw.studies.figures import Distribution, save_distributions
+from drake_screw.studies.hidden_failures import draw_hidden_failure
+from drake_screw.studies.table import HEADER, csv_text, read_runs, row, summary_csv
 
 FORMAT = 1
 STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"
@@ -113,12 +113,16 @@ class Study:
             if of_K
         }
 
-    def _results(self, missing: Sequence[tuple[int, int]], workers: int | None) -> Iterator[StudyRun]:
+    def _results(
+        self, missing: Sequence[tuple[int, int]], workers: int | None
+    ) -> Iterator[StudyRun]:
         """Runs as they are finished; the arm's code is compiled here, and only once."""
         first = int(not self.experiment.setup.batch_planner.compiled)
         for K, run in missing[:first]:
             yield self.experiment.run(K, run)
-        build = partial(_experiment, self.path / SCENARIO) if workers != 1 else lambda: self.experiment
+        build = (
+            partial(_experiment, self.path / SCENARIO) if workers != 1 else lambda: self.experiment
+        )
         shared = share_out(_carry_out, missing[first:], build=build, workers=workers)
         try:
             for _, finished in shared:

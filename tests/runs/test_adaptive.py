@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +15,9 @@ from drake_screw.commands.check import check
 from drake_screw.runs.directory import RunDirectory
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.schema import Interval, ObjectBlock, Scenario
+from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.values import Interval
+from drake_screw.scenario.workcell_blocks import ObjectBlock
 
 QUICK = ["coverage.beta=0.7", "coverage.epsilon=0.15", "seed=1"]
 ADAPTIVE = [*QUICK, "regions={adaptive: {smallest: 0.0625}}"]
@@ -88,7 +89,8 @@ def test_a_finished_run_is_told_again_with_its_cells(whole) -> None:
 def two_objects() -> Scenario:
     """Pouring into a bowl while a cup stands at the side, which may be turned."""
     one = load_scenario("pouring", [*ADAPTIVE, "demonstrations.budget=2"])
-    bowl = replace(one.objects[0], x=Interval(0.8, 0.95), y=Interval(0.2, 0.5))
+    ranges = {"x": Interval(0.8, 0.95), "y": Interval(0.2, 0.5)}
+    bowl = one.objects[0].model_copy(update=ranges)
     cup = ObjectBlock(
         name="cup",
         x=Interval(0.7, 0.8),
@@ -98,7 +100,7 @@ def two_objects() -> Scenario:
         radius=0.04,
         height=0.08,
     )
-    return replace(one, objects=(bowl, cup))
+    return one.model_copy(update={"objects": (bowl, cup)})
 
 
 def test_a_scenario_with_two_objects_runs(tmp_path) -> None:

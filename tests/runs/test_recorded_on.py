@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -342,7 +341,7 @@ def test_people_who_led_baxter_teach_the_iiwa(shared: Path, tmp_path: Path) -> N
     X = run.setup.area.X_WO(rng.uniform(run.setup.area.lower, run.setup.area.upper, (2000, 1, 3)))
     served = run.setup.planner.any_success(end.demonstrations, X, run.setup.workcell.start)
     assert served.any_success.mean() >= scenario.coverage.beta
-    own = replace(scenario, recorded_on=None)
+    own = scenario.model_copy(update={"recorded_on": None})
     with pytest.raises(RecordingError, match="no column 'iiwa_joint_1'"):
         new_run(own, tmp_path / "own")
     assert not (tmp_path / "own").exists()
