@@ -121,7 +121,7 @@ class TeachingPage:
             now = time.monotonic()
             if changed and now - updated > UPDATE_PERIOD:
                 updated, changed = now, session.recording
-                self._pose_arm(session.led.q)
+                self._pose_arm(session.guided.q)
                 self._server.show(session.state())
         self._inspector.clear()
         self._scene.clear_suggestion()

@@ -48,7 +48,7 @@ class TeachingSession:
         number: of the demonstration, from 0.
 
     Attributes:
-        led: the arm, as the person leads it.
+        guided: the arm, as the person leads it.
         over: whether the person has decided.
         accepted: the recording they accepted, if they did.
     """
@@ -96,8 +96,8 @@ class TeachingSession:
                     self._sliders[i] = np.clip(value, low[i], high[i])
                     self._q_wanted = None
             case {"joint": int(joint), "value": int() | float() as value} if self.leading:
-                if 0 <= joint < self.led.arm.n and isfinite(value):
-                    wanted = self.led.q.copy() if self._q_wanted is None else self._q_wanted
+                if 0 <= joint < self.guided.arm.n and isfinite(value):
+                    wanted = self.guided.q.copy() if self._q_wanted is None else self._q_wanted
                     wanted[joint] = value
                     self._q_wanted = wanted
 
@@ -106,17 +106,17 @@ class TeachingSession:
         if not self.leading:
             return False
         if self._q_wanted is not None:
-            moved = self.led.lead_joints(self._q_wanted)
-            self._sliders = self._slider_values(self.led.arm.pose(self.led.q))
+            moved = self.guided.lead_joints(self._q_wanted)
+            self._sliders = self._slider_values(self.guided.arm.pose(self.guided.q))
         else:
-            moved = self.led.lead_hand(self._pose(self._sliders))
+            moved = self.guided.lead_hand(self._pose(self._sliders))
         if self._samples is not None:
-            self._samples.append(self.led.q.copy())
+            self._samples.append(self.guided.q.copy())
         return moved
 
     def offer_folder(self, folder: Path) -> str:
         """Offer a recording from a folder; returns what became of it, in words."""
-        arm, objects = self.led.arm, len(self._setup.objects)
+        arm, objects = self.guided.arm, len(self._setup.objects)
         try:
             recording = read_recording(
                 folder, arm.joint_names, arm.lower, arm.upper, objects=objects
@@ -130,7 +130,7 @@ class TeachingSession:
 
     def state(self) -> dict[str, Any]:
         """What the panel shows."""
-        arm, q = self.led.arm, self.led.q
+        arm, q = self.guided.arm, self.guided.q
         margin = arm.margin(q)
         low, high = self._slider_range
         stuck = "the arm cannot follow: a joint is at its limit, or it is stretched out"
@@ -140,7 +140,7 @@ class TeachingSession:
         return {
             "title": f"{self._setup.scenario.name}: teach",
             "headline": f"demonstration {self._number + 1} is wanted at {asked}",
-            "message": self._message or (stuck if self.led.stuck else ""),
+            "message": self._message or (stuck if self.guided.stuck else ""),
             "clock": f"recording, {seconds:.1f} s" if self.recording else "",
             "hint": f"Move the hand by more than {spacing:.0f} mm while it turns: a turn on the "
             "spot leaves no trace in a recording.",
@@ -172,7 +172,7 @@ class TeachingSession:
 
     def _restart(self) -> None:
         start = self._setup.workcell.start
-        self.led = LedArm(self._setup.workcell.arm, start, PERIOD)
+        self.guided = LedArm(self._setup.workcell.arm, start, PERIOD)
         self._sliders = self._slider_values(self._X_WE_start)
         self._q_wanted = self._samples = self._offered = None
         self._segments = []
@@ -197,12 +197,12 @@ class TeachingSession:
         return pose(self._X_WE_start[:3, :3] @ turned, values[:3])
 
     def _record(self) -> None:
-        self._message, self._samples = "", [self.led.q.copy()]
+        self._message, self._samples = "", [self.guided.q.copy()]
 
     def _stop(self) -> None:
         q = np.array(self._samples)
         self._samples = None
-        arm = self.led.arm
+        arm = self.guided.arm
         recording = Recording(
             f"demo_{self._number + 1:02d}",
             arm.joint_names,

@@ -168,4 +168,4 @@ def test_nonsense_does_not_move_the_arm() -> None:
     while session.step():
         pass
     arm = setup.workcell.arm
-    assert 0.0 < arm.margin(session.led.q)[3] < 0.01
+    assert 0.0 < arm.margin(session.guided.q)[3] < 0.01
