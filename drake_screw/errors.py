@@ -10,6 +10,8 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
+from drake_screw.typing import PathLike
+
 
 class DrakeScrewError(Exception):
     """Base of the family.
@@ -26,7 +28,7 @@ class DrakeScrewError(Exception):
         message: str,
         *,
         remedy: str | None = None,
-        file: str | Path | None = None,
+        file: PathLike | None = None,
         line: int | None = None,
     ) -> None:
         super().__init__(message)

@@ -38,15 +38,15 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
         "scooping": "drake_screw.acquisition.simulated.motions:scooping",
     },
     "teachers": {
-        "simulated": "drake_screw.acquisition.simulated.teacher:SimulatedTeacher",
-        "recorded": "drake_screw.acquisition.recorded:RecordedTeacher",
-        "interactive": "drake_screw.acquisition.interactive:InteractiveTeacher",
+        "simulated": "drake_screw.assembly.teachers:simulated",
+        "recorded": "drake_screw.assembly.teachers:recorded",
+        "interactive": "drake_screw.assembly.teachers:interactive",
     },
     "recording_formats": {"folder": "drake_screw.demonstrations.library:read_recording"},
     "exporters": {
-        "baxter-csv": "drake_screw.execution.export:baxter_csv",
-        "ros-trajectory": "drake_screw.execution.export:ros_trajectory",
-        "npz": "drake_screw.execution.export:npz",
+        "baxter-csv": "drake_screw.execution.trajectory_formats:baxter_csv",
+        "ros-trajectory": "drake_screw.execution.trajectory_formats:ros_trajectory",
+        "npz": "drake_screw.execution.trajectory_formats:npz",
     },
 }
 """Where the parts of each group are defined; the first strategy is the default one."""

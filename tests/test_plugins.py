@@ -12,7 +12,6 @@ import pytest
 from drake_screw import bandits, plugins
 from drake_screw.acquisition.simulated import MOTIONS
 from drake_screw.errors import PluginError
-from drake_screw.execution import FORMATS
 from drake_screw.plugins import BUILT_IN, Group, find, is_known, is_plugged_in, names
 
 
@@ -45,8 +44,6 @@ def test_every_built_in_part_is_where_it_is_said_to_be(group: Group) -> None:
 def test_built_in_names_are_those_of_the_parts() -> None:
     assert tuple(find("strategies", n).name for n in BUILT_IN["strategies"]) == bandits.STRATEGIES
     assert dict(MOTIONS) == {name: find("motions", name) for name in BUILT_IN["motions"]}
-    assert BUILT_IN["exporters"].keys() <= FORMATS.keys()
-    assert all(find("exporters", name) is FORMATS[name] for name in BUILT_IN["exporters"])
 
 
 def test_entry_points_are_found_by_name_after_the_built_in_ones(installed: None) -> None:

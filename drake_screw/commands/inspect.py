@@ -1,108 +1,40 @@
-"""``drake-screw inspect``: a run's attempts in the terminal, and in the browser or on a page."""
+"""``drake-screw inspect``: why instances of a run fail."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
+import typer
 
-from drake_screw.runs.inspection import Inspection, open_inspection
-from drake_screw.visualization.attempt import Attempt, headline
-from drake_screw.visualization.palette import OUTCOME_NAMES
-from drake_screw.web.inspector_page import save_page, serve
-from drake_screw.web.inspector_panel import where
-from drake_screw.web.selection import Selection, select
-from drake_screw.web.server import warning
+from drake_screw.commands.options import RunArgument, VerboseOption
+from drake_screw.commands.output import Output
+
+EXAMPLE = "drake-screw inspect runs/pouring/TIME --html failing.html"
 
 
-def inspect_run(
-    run: Path,
-    console: Console,
-    *,
-    round: int | None = None,
-    instance: int | None = None,
-    html: Path | None = None,
-    host: str = "localhost",
-    port: int | None = None,
+def inspect(
+    run: RunArgument,
+    round: Annotated[
+        int | None, typer.Option(help="Round, from 1. Default: the last that asked.")
+    ] = None,
+    instance: Annotated[
+        int | None, typer.Option(help="Row of the round's instances, from 0. Default: suggested.")
+    ] = None,
+    html: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write a page instead of serving one.")
+    ] = None,
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "localhost",
+    port: Annotated[int | None, typer.Option(help="Port of the page. Default: a free one.")] = None,
+    verbose: VerboseOption = False,
 ) -> None:
-    """Look at a run: in the terminal, and in the browser or on a page.
+    """See why an instance fails.
 
-    Args:
-        run: its directory, finished or not.
-        console: to write to.
-        round: counted from 1; if None the last one that asked for a demonstration.
-        instance: a row of the round's instances, from 0; if None the suggested one, or the
-            earliest failing.
-        html: a page to write, with its numbers beside it; if None, serve until interrupted.
-        host, port: as in `serve`.
-
-    Raises:
-        RunDirectoryError: the directory is damaged, of another version, or has no round yet.
-        ScenarioError: there is no such round or instance.
-        DrakeScrewError: the page cannot be served there, or written.
+    In the terminal, and in Meshcat or on a page that can be kept. It begins with the last round
+    that asked for a demonstration, at the instance where it did.
     """
-    inspection = open_inspection(run)
-    first = select(inspection, inspection.check_round(round), instance)
-    if html is not None:
-        print_instance(inspection, first, console)
-        page = save_page(inspection, first, html)
-        console.print(f"written: {page}, its numbers beside it (.csv, .json)", soft_wrap=True)
-        return
-    risk = warning(host)
+    from drake_screw.commands.inspect_console import inspect_run
 
-    def announce(text: str) -> None:
-        if text == risk:
-            console.print(text, style="yellow", highlight=False, soft_wrap=True)
-        else:
-            console.print(text, soft_wrap=True)
-
-    def on_selection(selection: Selection) -> None:
-        show = print_instance if selection is first else _print_place
-        show(inspection, selection, console)
-
-    serve(inspection, first, host=host, port=port, announce=announce, on_selection=on_selection)
-
-
-def print_instance(inspection: Inspection, selection: Selection, console: Console) -> None:
-    """An instance and all its attempts in words and as a table."""
-    if selection.instance is None:
-        console.print("this round has no instances")
-        return
-    attempts = inspection.attempts(selection.round, selection.instance)
-    _print_place(inspection, selection, console)
-    console.print(instance_table(attempts))
-    for tried in attempts:
-        text = f"demonstration {tried.number + 1} {headline(tried)}"
-        console.print(Text(text), soft_wrap=True)
-
-
-def instance_table(attempts: Sequence[Attempt]) -> Table:
-    """All demonstrations of an instance side by side."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for name in ("", "demonstration", "outcome", "segment", "joint", "along it", "least margin"):
-        right = name in ("", "segment", "along it", "least margin")
-        table.add_column(name, justify="right" if right else "left")
-    for tried in attempts:
-        joint, margin = tried.tightest
-        names, failed, at = tried.arm.joint_names, tried.failed_segment, tried.failed_joint
-        table.add_row(
-            str(tried.number + 1),
-            tried.demonstration.name,
-            Text(OUTCOME_NAMES[tried.cause], style="green" if tried.plan.success else "yellow"),
-            "" if failed is None else f"{failed + 1} of {len(tried.guides)}",
-            "" if at is None else names[at],
-            "" if failed is None else f"{float(tried.plan.outcome.fraction):.1%}",
-            f"{margin:.3f} ({names[joint]})",
-        )
-    return table
-
-
-def _print_place(inspection: Inspection, selection: Selection, console: Console) -> None:
-    if selection.instance is not None:
-        x_y_yaw = inspection.event(selection.round).evaluation.x_y_yaw[selection.instance]
-        place = where(inspection.setup.area, x_y_yaw)
-        words = f"round {selection.round + 1}, instance {selection.instance}: {place}"
-        console.print(Text(words), soft_wrap=True)
+    inspect_run(
+        run, Output().console, round=round, instance=instance, html=html, host=host, port=port
+    )

@@ -33,12 +33,18 @@ def refusal(message: str, remedy: str | None = None) -> PydanticCustomError:
 class Block(BaseModel):
     """A block of a scenario file. The fields are its keys.
 
-    Each carries its meaning as description, its limits, and perhaps its unit; loading, the
-    reference page and the JSON Schema are driven by them. Types are strict: a truth value is no
+    The docstring of each is its meaning; its type has its limits, and perhaps its unit. Loading,
+    the reference page and the JSON Schema are driven by them. Types are strict: a truth value is no
     number, and a number no text. Nothing at all stands for an empty mapping.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        strict=True,
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
+    )
 
     def broken_rules(self) -> Iterator[Problem]:
         """Rules about several keys that are broken, by keys seen from this block.

@@ -131,7 +131,7 @@ def _with_nothing(schema: Any) -> Any:
 
 
 class _Generator(GenerateJsonSchema):
-    """Without the names that pydantic gives to keys and classes."""
+    """Without the names that pydantic gives to keys and classes, and line breaks in meanings."""
 
     def encode_default(self, dft: Any) -> Any:
         return dft.written() if isinstance(dft, Interval) else super().encode_default(dft)
@@ -143,6 +143,8 @@ class _Generator(GenerateJsonSchema):
         made = super().model_schema(schema)
         made.pop("title", None)
         made.pop("description", None)
+        for key in made["properties"].values():
+            key["description"] = " ".join(key["description"].split())
         return made
 
 

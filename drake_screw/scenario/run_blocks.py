@@ -24,27 +24,19 @@ from drake_screw.scenario.values import (
 
 
 class AdaptiveBlock(Block):
-    smallest: Annotated[float, Field(ge=1e-9, lt=1)] = Field(
-        default=1 / 256,
-        description="share of the work area that the smallest cells told apart take up",
-    )
-    level: Probability = Field(
-        default=0.5,
-        description="failure probability that a cell of that size may have without being noticed",
-    )
+    smallest: Annotated[float, Field(ge=1e-9, lt=1)] = 1 / 256
+    """share of the work area that the smallest cells told apart take up"""
+    level: Probability = 0.5
+    """failure probability that a cell of that size may have without being noticed"""
 
 
 class RegionsBlock(Block):
-    grid: dict[str, Annotated[int, Field(ge=1)]] | None = Field(
-        default=None,
-        description="number of cells per axis: x, y, yaw of the only object, or <object>.x and so "
-        "on; an axis not named has one cell",
-    )
-    adaptive: AdaptiveBlock | None = Field(
-        default=None,
-        description="cells that are halved wherever something fails, instead of a grid; they bring "
-        "a strategy of their own",
-    )
+    grid: dict[str, Annotated[int, Field(ge=1)]] | None = None
+    """number of cells per axis: x, y, yaw of the only object, or <object>.x and so on; an axis not
+    named has one cell"""
+    adaptive: AdaptiveBlock | None = None
+    """cells that are halved wherever something fails, instead of a grid; they bring a strategy of
+    their own"""
 
     def broken_rules(self) -> Iterator[Problem]:
         given = [name for name in ("grid", "adaptive") if getattr(self, name) is not None]
@@ -58,20 +50,16 @@ class RegionsBlock(Block):
 
 
 class CoverageBlock(Block):
-    beta: Probability = Field(
-        default=0.95, description="probability of success wanted in every region"
-    )
-    epsilon: Annotated[float, Field(ge=1e-4, lt=1)] = Field(
-        default=0.02,
-        description="accuracy to which failure probabilities are measured; below 1 - beta",
-    )
-    delta: Probability = Field(
-        default=0.05, description="probability that the measurement may be wrong: 1 - confidence"
-    )
-    strategy: Annotated[str, PartOf("strategies")] = Field(
-        default="eprocess", description="the bandit that measures coverage"
-    )
-    options: Options = Field(default={}, description="options of the strategy")
+    beta: Probability = 0.95
+    """probability of success wanted in every region"""
+    epsilon: Annotated[float, Field(ge=1e-4, lt=1)] = 0.02
+    """accuracy to which failure probabilities are measured; below 1 - beta"""
+    delta: Probability = 0.05
+    """probability that the measurement may be wrong: 1 - confidence"""
+    strategy: Annotated[str, PartOf("strategies")] = "eprocess"
+    """the bandit that measures coverage"""
+    options: Options = Field(default={})
+    """options of the strategy"""
 
     def broken_rules(self) -> Iterator[Problem]:
         slack = 1 - self.beta
@@ -86,17 +74,13 @@ class CoverageBlock(Block):
 
 class DemonstrationsBlock(Block):
     initial: Annotated[
-        Annotated[Annotated[int, Field(ge=0)], Tag("count")]
-        | Annotated[tuple[Folder, ...], Tag("folders")],
+        Annotated[int, Field(ge=0), Tag("count")] | Annotated[tuple[Folder, ...], Tag("folders")],
         Discriminator(lambda value: "folders" if isinstance(value, tuple) else "count"),
-    ] = Field(
-        default=1,
-        description="how many demonstrations to draw at random places before the first round, or a "
-        "list of recording folders, relative to the scenario file",
-    )
-    budget: Annotated[int, Field(ge=1)] = Field(
-        default=12, description="most demonstrations in total, the initial ones included"
-    )
+    ] = 1
+    """how many demonstrations to draw at random places before the first round, or a list of
+    recording folders, relative to the scenario file"""
+    budget: Annotated[int, Field(ge=1)] = 12
+    """most demonstrations in total, the initial ones included"""
 
     @property
     def initial_count(self) -> int:
@@ -123,15 +107,16 @@ class TeacherBlock(Block):
     model_config = ConfigDict(extra="allow", json_schema_extra=_only_own_keys_if_built_in)
     __pydantic_extra__: dict[str, Option] = Field(init=False)
 
-    kind: Annotated[str, PartOf("teachers")] = Field(description="who gives the demonstrations")
-    motion: Annotated[str, PartOf("motions")] | None = Field(
-        default=None, description="what a simulated teacher shows; for that kind only"
-    )
-    folder: Folder | None = Field(
-        default=None,
-        description="library of a recorded teacher, or a folder an interactive one watches for "
-        "recordings; relative to the scenario file",
-    )
+    kind: Annotated[str, PartOf("teachers")]
+    """who gives the demonstrations"""
+    motion: Annotated[str, PartOf("motions")] | None = None
+    """what a simulated teacher shows; for that kind only"""
+    folder: Folder | None = None
+    """library of a recorded teacher, or a folder an interactive one watches for recordings;
+    relative to the scenario file"""
+
+    format: Annotated[str, PartOf("recording_formats")] = "folder"
+    """format of recordings: in `folder` of a recorded teacher, and in `demonstrations.initial`"""
 
     @property
     def options(self) -> dict[str, Option]:
@@ -167,37 +152,20 @@ class TeacherBlock(Block):
 
 
 class SegmentationBlock(Block):
-    spacing: Positive = Field(
-        default=0.005,
-        description="smallest distance between poses kept of a recording",
-        json_schema_extra=METRES,
-    )
-    position_tolerance: Positive = Field(
-        default=0.015,
-        description="largest distance of the recorded hand from a constant screw",
-        json_schema_extra=METRES,
-    )
-    rotation_tolerance: Positive = Field(
-        default=0.15,
-        description="largest chordal quaternion distance of the recorded hand from a constant "
-        "screw",
-    )
-    min_progress: Positive = Field(
-        default=0.001,
-        description="smallest advance of the screw parameter between successive poses",
-    )
-    region_of_interest: Annotated[float, Field(ge=1)] = Field(
-        default=1.5,
-        description="guiding poses lie within this many times the smallest distance of hand and "
-        "object",
-    )
+    spacing: Annotated[Positive, METRES] = 0.005
+    """smallest distance between poses kept of a recording"""
+    position_tolerance: Annotated[Positive, METRES] = 0.015
+    """largest distance of the recorded hand from a constant screw"""
+    rotation_tolerance: Positive = 0.15
+    """largest chordal quaternion distance of the recorded hand from a constant screw"""
+    min_progress: Positive = 0.001
+    """smallest advance of the screw parameter between successive poses"""
+    region_of_interest: Annotated[float, Field(ge=1)] = 1.5
+    """guiding poses lie within this many times the smallest distance of hand and object"""
 
 
 class PlannerBlock(Block):
-    tolerance: Annotated[float, Field(ge=1e-9, lt=0.1)] = Field(
-        default=1e-4, description="error per step of the joint path", json_schema_extra=RADIANS
-    )
-    collision: bool = Field(
-        default=False,
-        description="whether a plan that touches the robot itself, the table or an object fails",
-    )
+    tolerance: Annotated[Annotated[float, Field(ge=1e-9, lt=0.1)], RADIANS] = 1e-4
+    """error per step of the joint path"""
+    collision: bool = False
+    """whether a plan that touches the robot itself, the table or an object fails"""

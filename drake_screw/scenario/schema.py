@@ -36,34 +36,35 @@ MOST_REGIONS = 4096
 class Scenario(Block):
     """A whole run: a scenario file with its defaults filled in and its paths made absolute."""
 
-    name: Name = Field(description="name of the scenario: letters, digits, - and _")
-    description: str = Field(default="", description="what the scenario is, in one line")
-    robot: RobotBlock = Field(description="the arm")
-    table: TableBlock | None = Field(
-        default=None, description="the table, a box; leave it out for none"
-    )
-    objects: tuple[ObjectBlock, ...] = Field(
-        description="the objects of the task, and where they may lie"
-    )
-    regions: RegionsBlock = Field(description="how the work area is divided")
-    coverage: CoverageBlock = Field(default=CoverageBlock(), description="what the run must show")
-    demonstrations: DemonstrationsBlock = Field(
-        default=DemonstrationsBlock(), description="how many demonstrations there may be"
-    )
-    teacher: TeacherBlock = Field(description="where demonstrations come from")
-    recorded_on: RecordedOnBlock | None = Field(
-        default=None,
-        description="the arm that a recorded teacher's recordings, and those listed in "
-        "`demonstrations.initial`, were made on, where it is not `robot`",
-    )
-    segmentation: SegmentationBlock = Field(
-        default=SegmentationBlock(), description="how recordings are cut into constant screws"
-    )
-    planner: PlannerBlock = Field(default=PlannerBlock(), description="how plans are computed")
-    seed: Annotated[int, Field(ge=0)] = Field(default=0, description="seed of all random draws")
-    meshcat: bool = Field(
-        default=False, description="whether a run shows itself in the browser as it goes on"
-    )
+    name: Name
+    """name of the scenario: letters, digits, - and _"""
+    description: str = ""
+    """what the scenario is, in one line"""
+    robot: RobotBlock
+    """the arm"""
+    table: TableBlock | None = None
+    """the table, a box; leave it out for none"""
+    objects: tuple[ObjectBlock, ...]
+    """the objects of the task, and where they may lie"""
+    regions: RegionsBlock
+    """how the work area is divided"""
+    coverage: CoverageBlock = CoverageBlock()
+    """what the run must show"""
+    demonstrations: DemonstrationsBlock = DemonstrationsBlock()
+    """how many demonstrations there may be"""
+    teacher: TeacherBlock
+    """where demonstrations come from"""
+    recorded_on: RecordedOnBlock | None = None
+    """the arm that a recorded teacher's recordings, and those listed in `demonstrations.initial`,
+    were made on, where it is not `robot`"""
+    segmentation: SegmentationBlock = SegmentationBlock()
+    """how recordings are cut into constant screws"""
+    planner: PlannerBlock = PlannerBlock()
+    """how plans are computed"""
+    seed: Annotated[int, Field(ge=0)] = 0
+    """seed of all random draws"""
+    meshcat: bool = False
+    """whether a run shows itself in the browser as it goes on"""
 
     _source: Path | None = PrivateAttr(default=None)
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, WithJsonSchema
-from pydantic.config import JsonDict
 from pydantic_core import CoreSchema, core_schema
 
 from drake_screw.plugins import BUILT_IN, REFERENCE, Group, choices, is_known
@@ -16,8 +15,8 @@ from drake_screw.resources import MODEL_SUFFIXES, looks_like_path
 from drake_screw.scenario.block import refusal
 from drake_screw.scenario.yaml_marks import Text
 
-METRES: JsonDict = {"unit": "m"}
-RADIANS: JsonDict = {"unit": "rad"}
+METRES = Field(json_schema_extra={"unit": "m"})
+RADIANS = Field(json_schema_extra={"unit": "rad"})
 
 NAME_PATTERN = "^[A-Za-z0-9_-]+$"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from typing import Annotated
 
 from pydantic import Field
 
@@ -21,22 +22,18 @@ from drake_screw.tasks import AXES
 
 
 class RobotBlock(Block):
-    model: ModelName = Field(
-        description="shipped model's name, or the path of a model file, relative to the scenario "
-        "file"
-    )
-    joints: tuple[str, ...] = Field(description="names of the arm's joints, from base to hand")
-    end_effector: str = Field(description="name of the frame that the demonstrations move")
-    start: tuple[float, ...] = Field(
-        description="joint angles from which every plan starts, in the order of `joints`",
-        json_schema_extra=RADIANS,
-    )
-    base: str = Field(default="base", description="name of the frame fixed to the world's origin")
-    parked: Angles = Field(
-        default={},
-        description="where other joints rest; joints not named rest at the model's default",
-        json_schema_extra=RADIANS,
-    )
+    model: ModelName
+    """shipped model's name, or the path of a model file, relative to the scenario file"""
+    joints: tuple[str, ...]
+    """names of the arm's joints, from base to hand"""
+    end_effector: str
+    """name of the frame that the demonstrations move"""
+    start: Annotated[tuple[float, ...], RADIANS]
+    """joint angles from which every plan starts, in the order of `joints`"""
+    base: str = "base"
+    """name of the frame fixed to the world's origin"""
+    parked: Annotated[Angles, RADIANS] = Field(default={})
+    """where other joints rest; joints not named rest at the model's default"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
@@ -49,28 +46,16 @@ class RobotBlock(Block):
 
 
 class RecordedOnBlock(Block):
-    model: ModelName = Field(
-        description="shipped model's name, or the path of a model file, relative to the scenario "
-        "file"
-    )
-    joints: tuple[str, ...] = Field(
-        description="names of that arm's joints, from base to hand; the recordings have a column "
-        "for each"
-    )
-    end_effector: str = Field(
-        description="name of that arm's frame which `robot.end_effector` stands for: same axes, "
-        "same grip"
-    )
-    base: str = Field(
-        default="base",
-        description="name of the frame in which the recordings have the objects' poses; its z "
-        "points up",
-    )
-    parked: Angles = Field(
-        default={},
-        description="where other joints rested; joints not named rested at the model's default",
-        json_schema_extra=RADIANS,
-    )
+    model: ModelName
+    """shipped model's name, or the path of a model file, relative to the scenario file"""
+    joints: tuple[str, ...]
+    """names of that arm's joints, from base to hand; the recordings have a column for each"""
+    end_effector: str
+    """name of that arm's frame which `robot.end_effector` stands for: same axes, same grip"""
+    base: str = "base"
+    """name of the frame in which the recordings have the objects' poses; its z points up"""
+    parked: Annotated[Angles, RADIANS] = Field(default={})
+    """where other joints rested; joints not named rested at the model's default"""
 
     def broken_rules(self) -> Iterator[Problem]:
         remedy = "Its angles are in the recordings; leave it out."
@@ -78,40 +63,31 @@ class RecordedOnBlock(Block):
 
 
 class TableBlock(Block):
-    center: tuple[float, float] = Field(
-        description="x, y of the centre of the table's top", json_schema_extra=METRES
-    )
-    size: tuple[Positive, Positive] = Field(
-        description="extent of the table's top along x, y", json_schema_extra=METRES
-    )
-    top: float = Field(description="height of the table's upper face", json_schema_extra=METRES)
-    thickness: Positive = Field(
-        default=0.04, description="thickness of the table's top", json_schema_extra=METRES
-    )
+    center: Annotated[tuple[float, float], METRES]
+    """x, y of the centre of the table's top"""
+    size: Annotated[tuple[Positive, Positive], METRES]
+    """extent of the table's top along x, y"""
+    top: Annotated[float, METRES]
+    """height of the table's upper face"""
+    thickness: Annotated[Positive, METRES] = 0.04
+    """thickness of the table's top"""
 
 
 class ObjectBlock(Block):
-    name: Name = Field(description="name of the object: letters, digits, - and _")
-    x: Interval = Field(
-        description="where the object's frame may lie along x: [lower, upper]",
-        json_schema_extra=METRES,
-    )
-    y: Interval = Field(
-        description="where the object's frame may lie along y: [lower, upper]",
-        json_schema_extra=METRES,
-    )
-    yaw: Interval = Field(
-        default=Interval(0.0, 0.0),
-        description="how the object may be turned about z: [lower, upper]",
-        json_schema_extra=RADIANS,
-    )
-    z: float = Field(description="height of the object's frame", json_schema_extra=METRES)
-    radius: Positive = Field(
-        description="radius of the object, to draw it and for collisions", json_schema_extra=METRES
-    )
-    height: Positive = Field(
-        description="height of the object, to draw it and for collisions", json_schema_extra=METRES
-    )
+    name: Name
+    """name of the object: letters, digits, - and _"""
+    x: Annotated[Interval, METRES]
+    """where the object's frame may lie along x: [lower, upper]"""
+    y: Annotated[Interval, METRES]
+    """where the object's frame may lie along y: [lower, upper]"""
+    yaw: Annotated[Interval, RADIANS] = Interval(0.0, 0.0)
+    """how the object may be turned about z: [lower, upper]"""
+    z: Annotated[float, METRES]
+    """height of the object's frame"""
+    radius: Annotated[Positive, METRES]
+    """radius of the object, to draw it and for collisions"""
+    height: Annotated[Positive, METRES]
+    """height of the object, to draw it and for collisions"""
 
     def broken_rules(self) -> Iterator[Problem]:
         for axis in AXES:

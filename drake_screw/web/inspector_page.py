@@ -10,7 +10,7 @@ from markupsafe import Markup
 from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.runs.inspection import Inspection
+from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.lifetime import page_meshcat, scratch
 from drake_screw.visualization.meshcat_page import add_to_page, render
 from drake_screw.web.attempt_tables import attempts_csv, attempts_json
@@ -24,7 +24,7 @@ POLL_PERIOD = 1.0
 
 
 def serve(
-    inspection: Inspection,
+    reader: RunReader,
     selection: Selection,
     *,
     host: str = "localhost",
@@ -35,7 +35,7 @@ def serve(
     """Show a run in the browser until interrupted.
 
     Args:
-        inspection: the run.
+        reader: the run.
         selection: what to show first.
         host: "localhost", or an address to listen on, so that others can look, too.
         port: of the page; any free one if None.
@@ -47,8 +47,8 @@ def serve(
         DrakeScrewError: the page cannot be served there.
     """
     check_address(host, port)
-    scene = InspectorScene(inspection, page_meshcat(host))
-    title = f"{inspection.setup.scenario.name}: inspect"
+    scene = InspectorScene(reader, page_meshcat(host))
+    title = f"{reader.setup.scenario.name}: inspect"
     server = PanelServer(scene.meshcat.port(), _panel(None), title, host=host, port=port)
     risk = warning(host)
     if risk is not None:
@@ -61,10 +61,10 @@ def serve(
         while True:
             message = server.message(POLL_PERIOD)
             if message is None:
-                if inspection.refresh():
+                if reader.refresh():
                     server.show(scene.show(selection, live=True))
                 continue
-            before, selection = selection, after_message(inspection, selection, message)
+            before, selection = selection, after_message(reader, selection, message)
             server.show(scene.show(selection, live=True))
             moved = (before.round, before.instance) != (selection.round, selection.instance)
             if moved and on_selection is not None:
@@ -75,7 +75,7 @@ def serve(
         server.close()
 
 
-def save_page(inspection: Inspection, selection: Selection, file: Path) -> Path:
+def save_page(reader: RunReader, selection: Selection, file: Path) -> Path:
     """Write one instance with all its demonstrations as a page that needs no network.
 
     Beside it, with the same name, are its numbers as .json and the plans as .csv.
@@ -90,7 +90,7 @@ def save_page(inspection: Inspection, selection: Selection, file: Path) -> Path:
             file=file,
         )
     with scratch():
-        page = _saved_page(inspection, selection)
+        page = _saved_page(reader, selection)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(page, encoding="utf-8")
@@ -99,18 +99,18 @@ def save_page(inspection: Inspection, selection: Selection, file: Path) -> Path:
             f"cannot be written: {error.strerror}", remedy="Give another --html.", file=file
         ) from error
     if selection.instance is not None:
-        attempts = inspection.attempts(selection.round, selection.instance)
+        attempts = reader.attempts(selection.round, selection.instance)
         file.with_suffix(".csv").write_text(attempts_csv(attempts))
         facts = {"round": selection.round + 1, "instance": selection.instance}
-        text = attempts_json(attempts, facts, inspection.setup.area)
+        text = attempts_json(attempts, facts, reader.setup.area)
         file.with_suffix(".json").write_text(text)
     return file
 
 
-def _saved_page(inspection: Inspection, selection: Selection) -> str:
+def _saved_page(reader: RunReader, selection: Selection) -> str:
     meshcat = Meshcat(MeshcatParams(host="localhost", show_stats_plot=False))
-    state = InspectorScene(inspection, meshcat).show(selection, live=False)
-    title = f"{inspection.setup.scenario.name}, round {selection.round + 1}"
+    state = InspectorScene(reader, meshcat).show(selection, live=False)
+    title = f"{reader.setup.scenario.name}, round {selection.round + 1}"
     return add_to_page(meshcat.StaticHtml(), _panel(state), title=title)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from drake_screw.planning import Cause, Outcomes
-from drake_screw.runs.inspection import Inspection
+from drake_screw.runs.reader import RunReader
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import (
@@ -37,47 +37,47 @@ KEY = (
 
 
 def panel_state(
-    inspection: Inspection, selection: Selection, drawn: Mapping[int, Drawn], *, live: bool
+    reader: RunReader, selection: Selection, drawn: Mapping[int, Drawn], *, live: bool
 ) -> dict[str, Any]:
     """All that the panel shows.
 
     Args:
-        inspection: the run.
+        reader: the run.
         selection: what is looked at.
         drawn: attempts at the selected instance that are drawn, by their demonstration.
         live: whether a program answers the panel's messages.
     """
-    event = inspection.event(selection.round)
+    event = reader.event(selection.round)
     regions, rates = event.regions, event.verdict.estimates
     here, attempts = None, []
     instance: dict[str, Any] = {"key": None, "where": "no instance", "which": ""}
     if selection.instance is not None:
         here = event.evaluation.x_y_yaw[selection.instance]
-        found = inspection.outcomes(selection.round, selection.instance)
+        found = reader.outcomes(selection.round, selection.instance)
         attempts = [
             attempt_entry(number, demonstration.name, found[number], drawn.get(number))
             for number, demonstration in enumerate(event.demonstrations)
         ]
         instance = {
             "key": [selection.round, selection.instance],
-            "where": where(inspection.setup.area, here),
-            "which": describe_instance(inspection, selection),
+            "where": where(reader.setup.area, here),
+            "which": describe_instance(reader, selection),
         }
     return {
         "live": live,
-        "title": inspection.setup.scenario.name,
+        "title": reader.setup.scenario.name,
         "round": selection.round,
-        "rounds": [{"value": r, "text": f"round {r + 1}"} for r in range(inspection.rounds)],
+        "rounds": [{"value": r, "text": f"round {r + 1}"} for r in range(reader.rounds)],
         "region": selection.region,
         "regions": [
             {"value": None, "text": "all regions"},
             *(
                 {"value": j, "text": f"region {j}: {regions.name(j)}, {rates[j]:.1%} fail"}
-                for j in np.unique(inspection.catalogue(selection.round).region).tolist()
+                for j in np.unique(reader.catalogue(selection.round).region).tolist()
             ),
         ],
         "instance": instance,
-        "steps": list(steps(inspection, selection)),
+        "steps": list(steps(reader, selection)),
         "attempts": attempts,
         "selected": selection.demonstration,
         "headline": round_headline(event),
@@ -151,11 +151,11 @@ def drawn_state(drawn: Drawn) -> dict[str, Any]:
     }
 
 
-def describe_instance(inspection: Inspection, selection: Selection) -> str:
+def describe_instance(reader: RunReader, selection: Selection) -> str:
     """An instance's number, its region, and its place among those that fail."""
     assert selection.instance is not None
-    book = inspection.catalogue(selection.round)
-    event = inspection.event(selection.round)
+    book = reader.catalogue(selection.round)
+    event = reader.event(selection.round)
     region = int(event.evaluation.region[selection.instance])
     words = f"instance {selection.instance:,} of {len(event.evaluation.x_y_yaw):,}, region {region}"
     place = book.find(selection.instance)

@@ -6,8 +6,8 @@ from typing import Any
 
 from pydrake.geometry import Meshcat
 
-from drake_screw.runs.inspection import Inspection
 from drake_screw.runs.pictures import make_scene
+from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.inspector import Drawn, Inspector
 from drake_screw.web.inspector_panel import panel_state
 from drake_screw.web.selection import Selection
@@ -17,14 +17,14 @@ class InspectorScene:
     """Draws what is selected of a run.
 
     Args:
-        inspection: the run.
+        reader: the run.
         meshcat: drawn into.
     """
 
-    def __init__(self, inspection: Inspection, meshcat: Meshcat) -> None:
-        setup = inspection.setup
+    def __init__(self, reader: RunReader, meshcat: Meshcat) -> None:
+        setup = reader.setup
         self.meshcat = meshcat
-        self._inspection = inspection
+        self._reader = reader
         self._scene = make_scene(setup, meshcat)
         self._inspector = Inspector(meshcat, setup.workcell, setup.objects)
         self._round: int | None = None
@@ -38,10 +38,10 @@ class InspectorScene:
             self._show_round(selection)
         drawn = self._draw_attempts(selection, selected_only=live)
         self.meshcat.Flush()
-        return panel_state(self._inspection, selection, drawn, live=live)
+        return panel_state(self._reader, selection, drawn, live=live)
 
     def _show_round(self, selection: Selection) -> None:
-        setup, event = self._inspection.setup, self._inspection.event(selection.round)
+        setup, event = self._reader.setup, self._reader.event(selection.round)
         self._scene.show_round(event, event.regions)
         self.meshcat.SetProperty("/demonstrations", "visible", False)
         self.meshcat.SetProperty("/objects", "visible", False)
@@ -57,12 +57,12 @@ class InspectorScene:
         self._inspector.clear()
         if selection.instance is None:
             return {}
-        event = self._inspection.event(selection.round)
+        event = self._reader.event(selection.round)
         here = event.evaluation.x_y_yaw[selection.instance]
-        self._inspector.show_instance(self._inspection.setup.area.X_WO(here))
+        self._inspector.show_instance(self._reader.setup.area.X_WO(here))
         return {
             number: self._inspector.draw(
-                self._inspection.attempt(selection.round, selection.instance, number)
+                self._reader.attempt(selection.round, selection.instance, number)
             )
             for number in range(len(event.demonstrations))
             if number == selection.demonstration or not selected_only

@@ -10,8 +10,7 @@ import numpy as np
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.planning import Cause
-from drake_screw.runs.certificate import statement
-from drake_screw.runs.inspection import Inspection
+from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.attempt import headline
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.meshcat_page import render
@@ -31,74 +30,72 @@ OTHERS = 2
 """Instances of other regions that are pictured for each round."""
 
 
-def write_report(inspection: Inspection, folder: Path | None = None) -> Path:
+def write_report(reader: RunReader, folder: Path | None = None) -> Path:
     """Write report.html, and a 3-D page for an instance of each round into the folder inspect.
 
     Args:
-        inspection: the run.
+        reader: the run.
         folder: where to; the run directory if None.
 
     Returns:
         The report.
     """
-    folder = inspection.run.directory.path if folder is None else folder
+    folder = reader.directory.path if folder is None else folder
     folder.mkdir(parents=True, exist_ok=True)
-    linkage = Linkage(inspection.setup.workcell)
+    linkage = Linkage(reader.setup.workcell)
     rounds = []
-    for round in range(inspection.rounds):
-        selection = select(inspection, round)
+    for round in range(reader.rounds):
+        selection = select(reader, round)
         page = f"{PAGES}/round_{round + 1:02d}"
-        save_page(inspection, selection, folder / f"{page}.html")
-        rounds.append(_round(inspection, selection, linkage, page))
+        save_page(reader, selection, folder / f"{page}.html")
+        rounds.append(_round(reader, selection, linkage, page))
     text = render(
         "drake_screw.web",
         "report.html.j2",
-        scenario=inspection.setup.scenario,
-        rounds_picture=_picture(inspection.run.directory.path / "rounds.png"),
+        scenario=reader.setup.scenario,
+        rounds_picture=_picture(reader.directory.path / "rounds.png"),
         rounds=rounds,
-        **_record(inspection),
+        **_record(reader),
     )
     file = folder / "report.html"
     file.write_text(text + "\n", encoding="utf-8")
     return file
 
 
-def _record(inspection: Inspection) -> dict[str, Any]:
+def _record(reader: RunReader) -> dict[str, Any]:
     """What the run's record says: verdict, facts, and demonstrations."""
-    record, block = inspection.run.directory.record, inspection.setup.scenario.coverage
-    stated = record["certificate"] or {}
-    certified = bool(stated.get("certified"))
+    record, block = reader.directory.record, reader.setup.scenario.coverage
+    stated = record.certificate
+    certified = stated is not None and stated.certified
     facts = [
         ("goal", f"every region succeeds at least {block.beta:g} of the time"),
         ("accuracy, confidence", f"{block.epsilon:g}, {1 - block.delta:g}"),
         ("strategy", block.strategy),
-        ("demonstrations", len(record["demonstrations"])),
-        ("rounds", inspection.rounds),
-        ("seed", record["seed"]),
-        ("started", record.get("started", "unknown")),
-        ("finished", record.get("finished") or "not yet"),
-        ("versions", ", ".join(f"{k} {v}" for k, v in record.get("versions", {}).items())),
+        ("demonstrations", len(record.demonstrations)),
+        ("rounds", reader.rounds),
+        ("seed", record.seed),
+        ("started", record.started),
+        ("finished", record.finished or "not yet"),
+        ("versions", ", ".join(f"{k} {v}" for k, v in record.versions.items())),
     ]
     return {
         "verdict": {
             "color": OUTCOME_COLORS[Cause.SUCCESS if certified else Cause.JOINT_LIMIT],
-            "title": "Certificate" if certified else f"No certificate: {record['status']}",
-            "lines": statement(stated, str(record["reason"])) if stated else [],
+            "title": "Certificate" if certified else f"No certificate: {record.status}",
+            "lines": () if stated is None else stated.statement,
         },
         "facts": facts,
         "demonstrations": [
-            {"name": entry["name"], "remark": entry["remark"], "notes": "; ".join(entry["notes"])}
-            for entry in record["demonstrations"]
+            {"name": entry.name, "remark": entry.remark, "notes": "; ".join(entry.notes)}
+            for entry in record.demonstrations
         ],
     }
 
 
-def _round(
-    inspection: Inspection, selection: Selection, linkage: Linkage, page: str
-) -> dict[str, Any]:
+def _round(reader: RunReader, selection: Selection, linkage: Linkage, page: str) -> dict[str, Any]:
     """One round: its heat map, its worst regions, and one instance of it looked at closely."""
-    event = inspection.event(selection.round)
-    folder = inspection.run.directory.round_folder(selection.round)
+    event = reader.event(selection.round)
+    folder = reader.directory.round_folder(selection.round)
     return {
         "number": selection.round + 1,
         "headline": round_headline(event),
@@ -106,8 +103,8 @@ def _round(
         "heat_map": _picture(folder / "heat_map.png"),
         "K": event.regions.K,
         "regions": _regions(event),
-        "instance": _instance(inspection, selection, linkage, page),
-        "others": _others(inspection, selection, linkage),
+        "instance": _instance(reader, selection, linkage, page),
+        "others": _others(reader, selection, linkage),
     }
 
 
@@ -126,19 +123,19 @@ def _regions(event: RoundFinished) -> list[dict[str, Any]]:
 
 
 def _instance(
-    inspection: Inspection, selection: Selection, linkage: Linkage, page: str
+    reader: RunReader, selection: Selection, linkage: Linkage, page: str
 ) -> dict[str, Any] | None:
     """The suggested instance, or the earliest failing: all attempts, the best of them drawn."""
     if selection.instance is None or selection.demonstration is None:
         return None
-    setup, event = inspection.setup, inspection.event(selection.round)
-    book = inspection.catalogue(selection.round)
+    setup, event = reader.setup, reader.event(selection.round)
+    book = reader.catalogue(selection.round)
     place = book.find(selection.instance)
     kind = "The suggested place for the next demonstration"
     if place is None or place != book.suggested():
         failing = place is not None and place < book.failing
         kind = "The instance that fails earliest" if failing else "An instance that succeeds"
-    attempts = inspection.attempts(selection.round, selection.instance)
+    attempts = reader.attempts(selection.round, selection.instance)
     best = attempts[selection.demonstration]
     return {
         "kind": kind,
@@ -161,10 +158,10 @@ def _instance(
     }
 
 
-def _others(inspection: Inspection, selection: Selection, linkage: Linkage) -> list[dict[str, Any]]:
+def _others(reader: RunReader, selection: Selection, linkage: Linkage) -> list[dict[str, Any]]:
     """The earliest failing instance of each of the worst regions but the selected one's."""
-    setup, event = inspection.setup, inspection.event(selection.round)
-    book = inspection.catalogue(selection.round)
+    setup, event = reader.setup, reader.event(selection.round)
+    book = reader.catalogue(selection.round)
     here = None if selection.instance is None else event.evaluation.region[selection.instance]
     others: list[dict[str, Any]] = []
     for region in _worst_first(event):
@@ -172,10 +169,10 @@ def _others(inspection: Inspection, selection: Selection, linkage: Linkage) -> l
         if region == here or len(failing) == 0 or failing[0] >= book.failing:
             continue
         instance = int(book.instance[failing[0]])
-        best = inspection.best(selection.round, instance)
+        best = reader.best(selection.round, instance)
         if best is None:
             continue
-        tried = inspection.attempt(selection.round, instance, best)
+        tried = reader.attempt(selection.round, instance, best)
         others.append(
             {
                 "region": region,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Self
 
-from drake_screw.acquisition.interactive import InteractiveTeacher
+from drake_screw.acquisition.interactive_teacher import InteractiveTeacher
 from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.errors import DrakeScrewError
 from drake_screw.runs.run import Listener

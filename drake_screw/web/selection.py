@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from drake_screw.runs.inspection import Inspection
+from drake_screw.runs.reader import RunReader
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,11 @@ class Selection:
     demonstration: int | None
 
 
-def select(inspection: Inspection, round: int, instance: int | None = None) -> Selection:
+def select(reader: RunReader, round: int, instance: int | None = None) -> Selection:
     """A round and an instance of it with its best attempt.
 
     Args:
-        inspection: the run.
+        reader: the run.
         round: counted from 0.
         instance: a row of the round's instances; if None the suggested one, or the earliest
             failing, or any.
@@ -37,42 +37,40 @@ def select(inspection: Inspection, round: int, instance: int | None = None) -> S
     Raises:
         ScenarioError: there is no such instance.
     """
-    instance = inspection.check_instance(round, instance)
-    best = None if instance is None else inspection.best(round, instance)
+    instance = reader.check_instance(round, instance)
+    best = None if instance is None else reader.best(round, instance)
     return Selection(round, None, instance, best)
 
 
-def after_message(
-    inspection: Inspection, selection: Selection, message: dict[str, Any]
-) -> Selection:
+def after_message(reader: RunReader, selection: Selection, message: dict[str, Any]) -> Selection:
     """The selection after a message of the panel; one that means nothing changes nothing.
 
     Messages: ``{"round": r}``, ``{"region": j or null}``, ``{"step": "next"}`` (previous, earliest,
     suggested), ``{"at": [x, y]}`` in m (the nearest instance), ``{"demonstration": d}``.
     """
     match message:
-        case {"round": int(round)} if 0 <= round < inspection.rounds:
-            return select(inspection, round)
+        case {"round": int(round)} if 0 <= round < reader.rounds:
+            return select(reader, round)
         case {"region": int() | None as region}:
-            listed = inspection.catalogue(selection.round).of_region(region)
+            listed = reader.catalogue(selection.round).of_region(region)
             if len(listed) > 0:
                 moved = replace(selection, region=region)
-                return _at_place(inspection, moved, int(listed[0]))
-        case {"step": str(step)} if step in steps(inspection, selection):
-            return _at_place(inspection, selection, steps(inspection, selection)[step])
+                return _at_place(reader, moved, int(listed[0]))
+        case {"step": str(step)} if step in steps(reader, selection):
+            return _at_place(reader, selection, steps(reader, selection)[step])
         case {"at": [int() | float() as x, int() | float() as y]}:
-            place = inspection.catalogue(selection.round).nearest_to(float(x), float(y))
+            place = reader.catalogue(selection.round).nearest_to(float(x), float(y))
             if place is not None:
-                return _at_place(inspection, replace(selection, region=None), place)
+                return _at_place(reader, replace(selection, region=None), place)
         case {"demonstration": int(number)} if selection.instance is not None:
-            if 0 <= number < len(inspection.event(selection.round).demonstrations):
+            if 0 <= number < len(reader.event(selection.round).demonstrations):
                 return replace(selection, demonstration=number)
     return selection
 
 
-def steps(inspection: Inspection, selection: Selection) -> dict[str, int]:
+def steps(reader: RunReader, selection: Selection) -> dict[str, int]:
     """Where each of the panel's buttons leads, as places in the round's catalogue."""
-    book = inspection.catalogue(selection.round)
+    book = reader.catalogue(selection.round)
     listed = book.of_region(selection.region)
     found: dict[str, int] = {}
     here = None if selection.instance is None else book.find(selection.instance)
@@ -90,8 +88,8 @@ def steps(inspection: Inspection, selection: Selection) -> dict[str, int]:
     return found
 
 
-def _at_place(inspection: Inspection, selection: Selection, place: int) -> Selection:
+def _at_place(reader: RunReader, selection: Selection, place: int) -> Selection:
     """The same round and region at another place of the catalogue, with its best attempt."""
-    instance = int(inspection.catalogue(selection.round).instance[place])
-    best = inspection.best(selection.round, instance)
+    instance = int(reader.catalogue(selection.round).instance[place])
+    best = reader.best(selection.round, instance)
     return replace(selection, instance=instance, demonstration=best)

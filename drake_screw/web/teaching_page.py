@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.acquisition import Event, Finished, RoundFinished, RoundStarted, Suggestion
-from drake_screw.acquisition.interactive import InteractiveTeacher
+from drake_screw.acquisition.interactive_teacher import InteractiveTeacher
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Recording
 from drake_screw.runs.narration import describe
@@ -91,7 +91,7 @@ class TeachingPage:
         self._show_idle("the run is starting")
         return self.url
 
-    def teach(self, suggestion: Suggestion, number: int) -> Recording | None:
+    def ask(self, suggestion: Suggestion, number: int) -> Recording | None:
         """Ask for a demonstration; returns when the person has decided.
 
         Args:

@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 
 from drake_screw.acquisition import Suggestion
-from drake_screw.acquisition.interactive import LedArm
+from drake_screw.acquisition.guided_arm import GuidedArm
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
-from drake_screw.planning import ReferencePlanner
-from drake_screw.runs.inspection import STEP
 from drake_screw.runs.narration import place
 from drake_screw.screws import exp, log, pose
 from drake_screw.typing import Array
@@ -48,7 +46,7 @@ class TeachingSession:
         number: of the demonstration, from 0.
 
     Attributes:
-        guided: the arm, as the person leads it.
+        led: the arm, as the person leads it.
         over: whether the person has decided.
         accepted: the recording they accepted, if they did.
     """
@@ -58,7 +56,6 @@ class TeachingSession:
     ) -> None:
         self._setup, self._inspector, self._number = setup, inspector, number
         self._suggestion = suggestion
-        self._planner = ReferencePlanner(setup.workcell.arm, step=STEP)
         self._X_WO = setup.area.X_WO(suggestion.x_y_yaw)
         self._X_WE_start = setup.workcell.arm.pose(setup.workcell.start)
         self.over = False
@@ -106,10 +103,10 @@ class TeachingSession:
         if not self.leading:
             return False
         if self._q_wanted is not None:
-            moved = self.guided.lead_joints(self._q_wanted)
+            moved = self.guided.guide_joints(self._q_wanted)
             self._sliders = self._slider_values(self.guided.arm.pose(self.guided.q))
         else:
-            moved = self.guided.lead_hand(self._pose(self._sliders))
+            moved = self.guided.guide_end_effector(self._pose(self._sliders))
         if self._samples is not None:
             self._samples.append(self.guided.q.copy())
         return moved
@@ -172,7 +169,7 @@ class TeachingSession:
 
     def _restart(self) -> None:
         start = self._setup.workcell.start
-        self.guided = LedArm(self._setup.workcell.arm, start, PERIOD)
+        self.guided = GuidedArm(self._setup.workcell.arm, start, PERIOD)
         self._sliders = self._slider_values(self._X_WE_start)
         self._q_wanted = self._samples = self._offered = None
         self._segments = []
@@ -218,8 +215,9 @@ class TeachingSession:
     def _offer(self, recording: Recording) -> None:
         """Cut a recording into screws and plan the suggested instance with it."""
         demonstration = self._setup.learn(recording)
-        start = self._setup.workcell.start
-        tried = attempt(self._planner, self._number, demonstration, self._X_WO, start)
+        workcell = self._setup.workcell
+        plan = self._setup.batch_planner.plan(demonstration, self._X_WO, workcell.start)
+        tried = attempt(workcell.arm, self._number, demonstration, self._X_WO, plan)
         self._inspector.draw(tried)
         self._segments = _segment_lines(tried)
         self._message = (

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import Event, Finished, RoundFinished
-from drake_screw.commands.check import check
+from drake_screw.assembly.preview import preview
 from drake_screw.runs.directory import RunDirectory
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.scenario.loader import load_scenario
@@ -59,7 +59,7 @@ def test_an_interrupted_run_resumes_to_the_same_result(whole, tmp_path) -> None:
     events = new_run(load_scenario("pouring", ADAPTIVE), tmp_path / "parts").events()
     next(event for event in events if isinstance(event, RoundFinished))
     events.close()
-    assert RunDirectory.open(tmp_path / "parts").record["status"] == "interrupted"
+    assert RunDirectory.open(tmp_path / "parts").record.status == "interrupted"
     again = rounds(open_run(tmp_path / "parts").events())
     assert len(again) == len(told)
     for one, other in zip(told, again, strict=True):
@@ -120,7 +120,7 @@ def test_a_scenario_with_two_objects_runs(tmp_path) -> None:
 
 
 def test_check_tells_what_adaptive_means() -> None:
-    text = check(load_scenario("pouring", ADAPTIVE))
+    text = str(preview(load_scenario("pouring", ADAPTIVE)))
     assert "adaptive: the work area is halved along its 2 axes" in text
     assert "certify_or_split" in text
     assert "in a first round where nothing fails, otherwise as many as it takes" in text

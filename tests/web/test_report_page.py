@@ -6,7 +6,7 @@ import json
 import shutil
 from html import unescape
 
-from drake_screw.runs.inspection import open_inspection
+from drake_screw.runs.run import open_run
 from drake_screw.web.report_page import write_report
 from tests.small_runs import finished_run
 
@@ -19,7 +19,7 @@ def test_words_of_a_run_are_escaped(finished_run, tmp_path) -> None:
     record = json.loads((copy / "run.json").read_text())
     record["demonstrations"][0]["remark"] = remark
     (copy / "run.json").write_text(json.dumps(record))
-    page = write_report(open_inspection(copy), tmp_path / "report").read_text(encoding="utf-8")
+    page = write_report(open_run(copy).reader, tmp_path / "report").read_text(encoding="utf-8")
     assert "<script" not in page
     assert f"<td>{remark}</td>" in unescape(page)
     assert '<svg class="chart"' in page

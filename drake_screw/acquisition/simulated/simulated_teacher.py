@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_screw.acquisition.events import Suggestion
-from drake_screw.acquisition.simulated.human import RATE, swayed, timed
-from drake_screw.acquisition.simulated.leading import Led, lead
+from drake_screw.acquisition.simulated.candidate_paths import CandidatePaths, follow_key_poses
+from drake_screw.acquisition.simulated.human import RATE, timed, with_hand_noise
 from drake_screw.acquisition.simulated.motions import (
     MOTIONS,
     HandPath,
@@ -29,20 +29,20 @@ from drake_screw.typing import Array
 
 CANDIDATES = 64  # ways thought of at a time
 ATTEMPTS = 3
-GLANCE = 6  # of so many points of a way one is looked at for collisions before it is performed
+COLLISION_STRIDE = 6  # one in so many points of a path is checked before it is performed
 MARGIN = 0.15  # rad, what people mean to keep from the joints' stops
-SLACK = 0.05  # rad, by which they miss it
-EASY = 0.6  # rad, beyond which more distance from the stops is no easier
-RELUCTANCE = 0.4  # rad of margin that people give up rather than come from a radian aside
-EFFORT = 0.03  # rad of margin that people give up rather than move the joints by a radian more
+MARGIN_TOLERANCE = 0.05  # rad, by which they miss it
+COMFORTABLE_MARGIN = 0.6  # rad, beyond which more distance from the stops is no easier
+AZIMUTH_WEIGHT = 0.4  # rad of margin that people give up rather than come from a radian aside
+TRAVEL_WEIGHT = 0.03  # rad of margin that people give up to save a radian of joint motion
 
 
 @dataclass(frozen=True, eq=False)
 class _Rehearsal:
-    """Candidates as tried out, and how comfortable each was; -inf where it does not work."""
+    """Candidate ways as tried out, and how comfortable each was; -inf where it does not work."""
 
-    path: HandPath
-    led: Led
+    hand: HandPath
+    paths: CandidatePaths
     comfort: Array
     within: NDArray[np.bool_]
 
@@ -51,7 +51,7 @@ class SimulatedTeacher:
     """Leads the arm of a workcell as people do.
 
     For each request it thinks of many ways to do the motion at that place, with the variation that
-    people show, leads the arm along each in its mind, and gives the most comfortable one that
+    people show, follows each with the arm's kinematics, and gives the most comfortable one that
     collides with nothing: far from the joints' stops, with little motion, coming from the usual
     side, the tool held as usual. Where none works it thinks again, with the tool held longer. It
     does not ask the planner, nor knows what other places the demonstration will serve.
@@ -75,7 +75,7 @@ class SimulatedTeacher:
         self.workcell = workcell
         self.area = area
         self.motion = motion if isinstance(motion, str) else getattr(motion, "__name__", "motion")
-        self._paths = MOTIONS[motion] if isinstance(motion, str) else motion
+        self._motion = MOTIONS[motion] if isinstance(motion, str) else motion
         self._chain = workcell.arm.screw_chain()
 
     def demonstrate(
@@ -95,15 +95,17 @@ class SimulatedTeacher:
         unreached = limited = collided = 0
         for attempt in range(ATTEMPTS):
             rehearsal = self._rehearse(X_WO, rng, stretched=attempt > 0)
-            unreached += int(np.count_nonzero(~rehearsal.led.arrived))
-            limited += int(np.count_nonzero(rehearsal.led.arrived & ~rehearsal.within))
+            unreached += int(np.count_nonzero(~rehearsal.paths.arrived))
+            limited += int(np.count_nonzero(rehearsal.paths.arrived & ~rehearsal.within))
             possible = np.flatnonzero(np.isfinite(rehearsal.comfort))
             for choice in possible[np.argsort(-rehearsal.comfort[possible])]:
-                if self.workcell.collides(rehearsal.led.q[choice, ::GLANCE], X_WO).any():
+                if self.workcell.collides(
+                    rehearsal.paths.q[choice, ::COLLISION_STRIDE], X_WO
+                ).any():
                     collided += 1
                     continue
                 q = self._perform(rehearsal, int(choice), rng)
-                if (self.workcell.arm.margin(q) < MARGIN - SLACK).any():
+                if (self.workcell.arm.margin(q) < MARGIN - MARGIN_TOLERANCE).any():
                     limited += 1
                 elif self.workcell.collides(q, X_WO).any():
                     collided += 1
@@ -119,28 +121,33 @@ class SimulatedTeacher:
 
     def _rehearse(self, X_WO: Array, rng: np.random.Generator, *, stretched: bool) -> _Rehearsal:
         rest, p_WO = self._chain.pose(self.workcell.start), X_WO[0, :3, 3]
-        path = self._paths(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
+        hand = self._motion(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
         aside = azimuth_deviations(rng, CANDIDATES)
-        X_WK = hand_poses(path, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
-        led = lead(self._chain, self.workcell.start, X_WK)
-        margin = self.workcell.arm.margin(led.q).min(axis=(1, 2))
+        X_WK = hand_poses(hand, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
+        paths = follow_key_poses(self._chain, self.workcell.start, X_WK)
+        margin = self.workcell.arm.margin(paths.q).min(axis=(1, 2))
         within = margin >= MARGIN
-        travel = np.linalg.norm(np.diff(led.q, axis=1), axis=-1).sum(axis=1)
-        comfort = np.minimum(margin, EASY) - path.held - RELUCTANCE * aside**2 - EFFORT * travel
+        travel = np.linalg.norm(np.diff(paths.q, axis=1), axis=-1).sum(axis=1)
+        comfort = (
+            np.minimum(margin, COMFORTABLE_MARGIN)
+            - hand.held
+            - AZIMUTH_WEIGHT * aside**2
+            - TRAVEL_WEIGHT * travel
+        )
         comfort += rng.normal(0.0, 0.02, CANDIDATES)
-        return _Rehearsal(path, led, np.where(led.arrived & within, comfort, -np.inf), within)
+        return _Rehearsal(hand, paths, np.where(paths.arrived & within, comfort, -np.inf), within)
 
     def _perform(self, rehearsal: _Rehearsal, choice: int, rng: np.random.Generator) -> Array:
-        q = rehearsal.led.q[choice]
+        q = rehearsal.paths.q[choice]
         moving = timed(
             q,
-            rehearsal.led.segment,
+            rehearsal.paths.segment,
             self._chain.pose(q),
-            rehearsal.path.pause,
+            rehearsal.hand.pause,
             self.workcell.arm.velocity_limits,
             rng,
         )
-        return swayed(self._chain, moving, rng)
+        return with_hand_noise(self._chain, moving, rng)
 
     def _recording(self, q: Array, X_WO: Array, number: int) -> Recording:
         arm = self.workcell.arm

@@ -17,7 +17,7 @@ from drake_screw.typing import Array
 
 
 class Foreign(Protocol):
-    """What a teacher has to ask about recordings that another robot's arm was led for."""
+    """What a teacher has to ask about recordings made on another robot."""
 
     def seen(self, recording: Recording) -> Array:
         """Where its objects stood, X_WO (k, 4, 4), in the world that requests refer to."""

@@ -1,9 +1,8 @@
-"""Timed plans as files that robots and people can use."""
+"""Timed plans as files that robots and people can use: functions of a plan and its arm to bytes."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
 
 import numpy as np
 import yaml
@@ -77,11 +76,3 @@ def resting(arm: Arm) -> dict[str, float]:
         for joint in joints
         if joint.num_positions() == 1
     }
-
-
-FORMATS: dict[str, Callable[[TimedPlan, Arm], bytes]] = {
-    "baxter-csv": baxter_csv,
-    "ros-trajectory": ros_trajectory,
-    "npz": npz,
-}
-"""Writers by the name of their format."""

@@ -30,7 +30,7 @@ class Evaluator:
         q_start: (n,) rad, start configuration of every plan.
         strategy: decides when enough is known.
         seed: of the run.
-        progress: told of every batch. Within a round the strategy is in control, so this is a
+        progress: called after every batch. Within a round the strategy is in control, so this is a
             callback where all else about a run is an event of `acquire`.
     """
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from drake_screw.acquisition.evaluation import BATCH, Progress
 from drake_screw.acquisition.events import Evaluation, RegionsEvaluated
+from drake_screw.acquisition.grid_evaluator import BATCH, Progress
 from drake_screw.bandits import Cell, CertifyOrSplit, TreeVerdict, Verdict, cell_number
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Outcomes, Planner, concatenate
@@ -21,11 +21,11 @@ class TreeEvaluator:
 
     Args:
         planner: plans the instances.
-        area: the work area; the tree's unit box has an axis for each of its axes with room.
+        area: the work area; the tree's unit box has an axis for each of its free axes.
         q_start: (n,) rad, start configuration of every plan.
         tree: decides where to draw and when enough is known.
         seed: of the run.
-        progress: told of every batch, with the counts of the whole area.
+        progress: called with every batch's event, which has the counts of the whole area.
 
     Raises:
         ValueError: the tree has another number of axes.
@@ -40,9 +40,11 @@ class TreeEvaluator:
         seed: int,
         progress: Progress | None = None,
     ) -> None:
-        room = int(free_axes(area).sum())
-        if tree.dimension != room:
-            raise ValueError(f"the tree has {tree.dimension} axes, the work area {room}")
+        free = int(free_axes(area).sum())
+        if tree.dimension != free:
+            raise ValueError(
+                f"the tree has {tree.dimension} axes, the work area has {free} free ones"
+            )
         self._planner = planner
         self._area = area
         self._q_start = q_start

@@ -10,12 +10,11 @@ import yaml
 
 from drake_screw.demonstrations import read_recording
 from drake_screw.demonstrations.baxter_csv import COLUMNS
-from drake_screw.execution import FORMATS
-from drake_screw.execution.export import PERIOD
+from drake_screw.execution.trajectory_formats import PERIOD, baxter_csv, npz, ros_trajectory
 
 
 def test_baxter_csv_round_trips_through_our_reader(timed, arm, tmp_path):
-    (tmp_path / "joint_angles.csv").write_bytes(FORMATS["baxter-csv"](timed, arm))
+    (tmp_path / "joint_angles.csv").write_bytes(baxter_csv(timed, arm))
     pose = "\n".join(",".join(str(v) for v in row) for row in np.eye(4).tolist())
     (tmp_path / "object_poses.csv").write_text(pose + "\n")
     recording = read_recording(tmp_path, arm.joint_names, arm.lower, arm.upper)
@@ -31,7 +30,7 @@ def test_baxter_csv_round_trips_through_our_reader(timed, arm, tmp_path):
 
 
 def test_baxter_csv_has_all_that_the_playback_program_wants(timed, arm, robot):
-    lines = FORMATS["baxter-csv"](timed, arm).decode().splitlines()
+    lines = baxter_csv(timed, arm).decode().splitlines()
     assert lines[0].split(",") == ["time", *COLUMNS]
     table = np.array([[float(v) for v in line.split(",")] for line in lines[1:]])
     t, q, _ = timed.sampled(PERIOD)
@@ -48,7 +47,7 @@ def test_baxter_csv_has_all_that_the_playback_program_wants(timed, arm, robot):
 
 
 def test_ros_trajectory_is_a_message(timed, arm):
-    message = yaml.safe_load(FORMATS["ros-trajectory"](timed, arm))
+    message = yaml.safe_load(ros_trajectory(timed, arm))
     assert message["joint_names"] == list(arm.joint_names)
     points = message["points"]
     t, q, v = timed.sampled(PERIOD)
@@ -61,7 +60,7 @@ def test_ros_trajectory_is_a_message(timed, arm):
 
 
 def test_npz_holds_the_arrays(timed, arm):
-    with np.load(io.BytesIO(FORMATS["npz"](timed, arm))) as data:
+    with np.load(io.BytesIO(npz(timed, arm))) as data:
         t, q, v = timed.sampled(PERIOD)
         np.testing.assert_array_equal(data["t"], t)
         np.testing.assert_array_equal(data["q"], q)
@@ -75,7 +74,7 @@ def test_npz_holds_the_arrays(timed, arm):
 
 def test_an_arm_that_is_not_baxters_gets_its_own_columns(seven_timed):
     timed, arm = seven_timed
-    header = FORMATS["baxter-csv"](timed, arm).decode().splitlines()[0]
+    header = baxter_csv(timed, arm).decode().splitlines()[0]
     assert header == "time," + ",".join(arm.joint_names)
 
 

@@ -1,7 +1,7 @@
-"""How an arm follows a hand that leads it: many candidates at a time, in joint space.
+"""Joint paths of an arm that a hand leads through key poses, many candidates at a time.
 
 An arm whose weight is compensated follows the hand that leads its end effector, and its joints
-move no more than they must: dq = J(q)^+ V. People lead it along nearly straight screws, and that
+move with the minimum norm: dq = J(q)^+ V. People lead it along nearly straight screws, and that
 is what the key poses are joined by. The planner moves the arm by the same law, which is why what
 can be led this way can nearly always be planned, too.
 """
@@ -18,20 +18,20 @@ from drake_screw.screws import inverse, log, rotation_angle, sclerp, translation
 from drake_screw.typing import Array
 
 STEP = 0.06  # rad, hand motion in one step
-CHARACTERISTIC_LENGTH = 0.5  # m, hand motion that takes as many steps as a radian
+METERS_PER_RADIAN = 0.5  # travel of the hand that takes as many steps as a turn by a radian
 DAMPING = 0.01
-FASTEST = 0.25  # rad, joint motion in one step beyond which nobody could lead the arm
-ARRIVED = (2e-3, 1e-2)  # m, rad
+MAX_JOINT_STEP = 0.25  # rad in one step; beyond it nobody could lead the arm
+ARRIVAL_TOLERANCE = (2e-3, 1e-2)  # m, rad
 
 
 @dataclass(frozen=True, eq=False)
-class Led:
+class CandidatePaths:
     """Joint paths of c candidates.
 
     Attributes:
         q: (c, m, n) rad or m.
         segment: (m,) the key pose, from 0, that each point leads to.
-        arrived: (c,) whether the hand came to every key pose without the joints racing.
+        arrived: (c,) whether the hand came to every key pose without passing near a singularity.
     """
 
     q: Array
@@ -39,7 +39,7 @@ class Led:
     arrived: NDArray[np.bool_]
 
 
-def lead(chain: ScrewChain, q_start: Array, X_WK: Array) -> Led:
+def follow_key_poses(chain: ScrewChain, q_start: Array, X_WK: Array) -> CandidatePaths:
     """Lead the arm from one key pose to the next along constant screws.
 
     Args:
@@ -56,26 +56,29 @@ def lead(chain: ScrewChain, q_start: Array, X_WK: Array) -> Led:
     points, segments, arrived = [q], [0], np.ones(count, dtype=bool)
     for segment in range(X_WK.shape[1]):
         X_WA, X_WB = X_WE, X_WK[:, segment]
-        size = rotation_angle(X_WA, X_WB) + translation_distance(X_WA, X_WB) / CHARACTERISTIC_LENGTH
+        size = rotation_angle(X_WA, X_WB) + translation_distance(X_WA, X_WB) / METERS_PER_RADIAN
         steps = max(4, int(np.ceil(size.max() / STEP)))
         for i in range(1, steps + 1):
             target = sclerp(X_WA, X_WB, np.full(count, i / steps))
-            motion = joint_motion(chain.jacobian(q), log(target @ inverse(X_WE)))
-            racing = np.linalg.norm(motion, axis=-1) > FASTEST
-            arrived &= ~racing
-            q = q + np.where(racing[:, None], 0.0, motion)
+            motion = damped_joint_motion(chain.jacobian(q), log(target @ inverse(X_WE)))
+            near_singular = np.linalg.norm(motion, axis=-1) > MAX_JOINT_STEP
+            arrived &= ~near_singular
+            q = q + np.where(near_singular[:, None], 0.0, motion)
             X_WE = chain.pose(q)
             points.append(q)
             segments.append(segment)
             if not arrived.any():
-                return Led(np.stack(points, axis=1), np.array(segments), arrived)
-        arrived &= translation_distance(X_WE, X_WB) < ARRIVED[0]
-        arrived &= rotation_angle(X_WE, X_WB) < ARRIVED[1]
-    return Led(np.stack(points, axis=1), np.array(segments), arrived)
+                return CandidatePaths(np.stack(points, axis=1), np.array(segments), arrived)
+        arrived &= translation_distance(X_WE, X_WB) < ARRIVAL_TOLERANCE[0]
+        arrived &= rotation_angle(X_WE, X_WB) < ARRIVAL_TOLERANCE[1]
+    return CandidatePaths(np.stack(points, axis=1), np.array(segments), arrived)
 
 
-def joint_motion(J: Array, V: Array) -> Array:
-    """The least joint motion for a twist, damped where the arm is singular.
+def damped_joint_motion(J: Array, V: Array) -> Array:
+    """Minimum-norm joint motion for a twist, damped near singularities.
+
+    dq = J^T (J J^T + damping^2 I)^-1 V: damped least squares (Nakamura and Hanafusa, Journal of
+    Dynamic Systems, Measurement, and Control, 1986).
 
     Args:
         J: (..., 6, n).

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from drake_screw.bandits.mixture import ln_e_clear, ln_e_flag
+from drake_screw.typing import Array
 
 
 class ClearBoundary:
@@ -25,7 +26,7 @@ class ClearBoundary:
         self._c = c
         self._known = np.full(64, -1, dtype=np.int64)
 
-    def __call__(self, s: np.ndarray | int) -> np.ndarray:
+    def __call__(self, s: Array | int) -> Array:
         """least n (...) int for s (...) failures."""
         s = np.asarray(s)
         if s.max() >= len(self._known):
@@ -39,7 +40,7 @@ class ClearBoundary:
             n = self._known[s]
         return n
 
-    def _search(self, s: np.ndarray) -> np.ndarray:
+    def _search(self, s: Array) -> Array:
         below, above = s.copy(), s + 64
         while (late := ln_e_clear(above, s, self._t) < self._c).any():
             below = np.where(late, above, below)

@@ -13,6 +13,7 @@ from drake_screw.bandits.mixture import confidence_interval, coverage_bound
 from drake_screw.bandits.spending import attempt_delta
 from drake_screw.bandits.tally import FIRST, STEP, Tally
 from drake_screw.bandits.verdict import Goal, Pull, Verdict
+from drake_screw.typing import Array
 
 
 @lru_cache(maxsize=1024)
@@ -42,7 +43,7 @@ class BoundStrategy(ABC):
     spend: bool = True
 
     @abstractmethod
-    def choose(self, tally: Tally, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    def choose(self, tally: Tally, lower: Array, upper: Array) -> Array:
         """The regions to sample next, as an index or mask array, given bounds (K,)."""
 
     def decide(self, pull: Pull, K: int, *, attempt: int) -> Verdict:
