@@ -46,7 +46,7 @@ class TeachingSession:
         number: of the demonstration, from 0.
 
     Attributes:
-        led: the arm, as the person leads it.
+        guided: the arm, as the person leads it.
         over: whether the person has decided.
         accepted: the recording they accepted, if they did.
     """

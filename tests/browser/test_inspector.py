@@ -22,7 +22,7 @@ SERVE = """
 import sys
 from pathlib import Path
 from rich.console import Console
-from drake_screw.commands.inspect import inspect_run
+from drake_screw.commands.inspect_console import inspect_run
 inspect_run(Path(sys.argv[1]), Console(width=200), round=1)
 """
 

@@ -17,7 +17,7 @@ from rich.console import Console
 
 from drake_screw import cli
 from drake_screw.acquisition import Finished
-from drake_screw.commands.inspect import inspect_run, instance_table
+from drake_screw.commands.inspect_console import inspect_run, instance_table
 from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause
 from drake_screw.runs.run import open_run
