@@ -12,7 +12,7 @@ import numpy as np
 from drake_screw.acquisition import RecordedTeacher, random_suggestion
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import CertifyOrSplit
-from drake_screw.bandits.boundary import clear_boundary, deciding_size
+from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
 from drake_screw.bandits.eprocess import EProcess
 from drake_screw.bandits.naive_pac import NaivePac, sample_size
 from drake_screw.bandits.spending import attempt_delta

@@ -10,15 +10,16 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from drake_screw.acquisition import Evaluator, RecordedTeacher, Teacher, TreeEvaluator
-from drake_screw.acquisition.evaluation import Progress
-from drake_screw.acquisition.simulated import Motion, SimulatedTeacher
-from drake_screw.assembly.recorder import ForeignRecordings, Recorder
+from drake_screw.acquisition import Evaluator, Teacher, TreeEvaluator
+from drake_screw.acquisition.grid_evaluator import Progress
+from drake_screw.acquisition.simulated import Motion
+from drake_screw.assembly.recorder import Recorder
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Recording, SegmentationConfig
 from drake_screw.errors import ScenarioError
 from drake_screw.planning import BatchPlanner, Outcomes, Planner
 from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.plugins import find
 from drake_screw.robot import (
     ObjectConfig,
     RobotConfig,
@@ -214,28 +215,24 @@ class Setup:
         Raises:
             ScenarioError: the scenario has an interactive teacher, and none was passed in.
             RecordingError: the library of a recorded one cannot be used.
+            PluginError: the scenario names one that is not to be found.
         """
-        block, make = self.scenario.teacher, self._parts.get("teacher")
+        make = self._parts.get("teacher")
         if make is not None:
             return make(self)
-        if block.kind == "interactive":
-            raise ScenarioError(
-                "teacher.kind: an interactive teacher has to be passed in: it asks on a page",
-                remedy="Run it from the command line, or pass "
-                "teacher=drake_screw.web.teaching_page.interactive_teacher.",
-                file=self.scenario.source,
-            )
-        if block.folder is not None:
-            recordings = self.recorder.library(block.folder)
-            foreign = None
-            if self.recorder.robot is not None:
-                foreign = ForeignRecordings(
-                    self.recorder, self.segmentation, self.planner, self.workcell.start
-                )
-            return RecordedTeacher(recordings, self.regions, foreign)
-        return SimulatedTeacher(
-            self.workcell, self.area, self._parts.get("motion") or str(block.motion)
-        )
+        block = self.scenario.teacher
+        teacher: Teacher = find("teachers", block.kind)(self, **block.options)
+        return teacher
+
+    @property
+    def motion(self) -> Motion:
+        """What a simulated teacher shows.
+
+        Raises:
+            PluginError: the scenario names one that is not to be found.
+        """
+        passed_in = self._parts.get("motion")
+        return passed_in or find("motions", str(self.scenario.teacher.motion))
 
     @cached_property
     def initial(self) -> int | tuple[Recording, ...]:
@@ -243,7 +240,8 @@ class Setup:
         block = self.scenario.demonstrations.initial
         if isinstance(block, int):
             return block
-        return tuple(self.recorder.read(folder) for folder in block)
+        format = self.scenario.teacher.format
+        return tuple(self.recorder.read(folder, format) for folder in block)
 
     @cached_property
     def own_recorder(self) -> Recorder:
@@ -272,7 +270,7 @@ class Setup:
         Raises:
             RecordingError: there is none in it, or one cannot be used.
         """
-        return self.recorder.library(Path(folder))
+        return self.recorder.library(Path(folder), self.scenario.teacher.format)
 
     def evaluate(self, demonstrations: Sequence[Demonstration], instances: ArrayLike) -> Outcomes:
         """Plan every task instance with every demonstration.

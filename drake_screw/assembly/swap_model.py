@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from pydrake.multibody.parsing import Parser
@@ -11,7 +10,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from drake_screw.errors import ModelError
 from drake_screw.robot import RobotConfig
 from drake_screw.robot.workcell import add_robot
-from drake_screw.scenario.schema import ModelName, Scenario
+from drake_screw.scenario.schema import Scenario
 
 
 def swap_model(scenario: Scenario, model: Path) -> Scenario:
@@ -25,7 +24,7 @@ def swap_model(scenario: Scenario, model: Path) -> Scenario:
         ModelError: the model cannot be read or lacks the base, or it is one of the robot that the
             recordings were made on.
     """
-    block = replace(scenario.robot, model=ModelName(str(model.resolve())))
+    block = scenario.robot.model_copy(update={"model": str(model.resolve())})
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
     add_robot(
@@ -41,4 +40,5 @@ def swap_model(scenario: Scenario, model: Path) -> Scenario:
             file=model,
         )
     parked = {name: value for name, value in block.parked.items() if name in names}
-    return replace(scenario, robot=replace(block, parked=parked))
+    robot = block.model_copy(update={"parked": parked})
+    return scenario.model_copy(update={"robot": robot})

@@ -33,8 +33,8 @@ def inspect(
     In the terminal, and in Meshcat or on a page that can be kept. It begins with the last round
     that asked for a demonstration, at the instance where it did.
     """
-    from drake_screw.web import inspector_page
+    from drake_screw.commands.inspect_console import inspect_run
 
-    inspector_page.inspect(
+    inspect_run(
         run, Output().console, round=round, instance=instance, html=html, host=host, port=port
     )

@@ -1,4 +1,4 @@
-"""``drake-screw report``: a finished run, told and drawn from its directory."""
+"""``drake-screw report``: a finished run, shown and drawn again from its directory."""
 
 from __future__ import annotations
 
@@ -14,20 +14,17 @@ def report(run: RunArgument, json: JsonOption = None, verbose: VerboseOption = F
     Draws all of its pictures again, too.
     """
     output = Output(json)
-    from drake_screw.acquisition import Finished
     from drake_screw.commands.console import show_event, show_summary
-    from drake_screw.runs.inspection import Inspection
     from drake_screw.runs.run import open_run, redraw
     from drake_screw.runs.summary import summarize_run
     from drake_screw.web.report_page import write_report
 
     job = open_run(run)
-    *events, finished = job.replay()
-    assert isinstance(finished, Finished)
-    summary = summarize_run(job, finished)
+    events = list(job.replay())
+    summary = summarize_run(job)
     for event in events:
         show_event(event, job.setup.regions, output.console)
     show_summary(summary, output.console)
     redraw(job)
-    output.say(f"written: {write_report(Inspection(job))}")
+    output.say(f"written: {write_report(job.reader)}")
     output.write(summary)

@@ -66,12 +66,12 @@ def run(
     if resume is not None:
         check_resumed_alone("run", scenario, demonstrations, model, seed, output, set_)
     out = Output(json)
-    from drake_screw.acquisition import Event, Finished
+    from drake_screw.acquisition import Event
     from drake_screw.commands.console import RunConsole, show_summary
     from drake_screw.runs.narration import describe
     from drake_screw.runs.run import new_run, open_run, resumable
     from drake_screw.runs.summary import summarize_run
-    from drake_screw.web.pages import Pages
+    from drake_screw.web.run_pages import RunPages
 
     if resume is None:
         loaded = chosen_scenario(scenario, set_, model, seed=seed, demonstrations=demonstrations)
@@ -81,7 +81,7 @@ def run(
     def log(event: Event) -> None:
         _log.debug("%s", describe(event, job.setup.regions))
 
-    with Pages(loaded, watched=meshcat, host=host, port=port, announce=out.say) as pages:
+    with RunPages(loaded, watched=meshcat, host=host, port=port, announce=out.say) as pages:
         job = (
             new_run(loaded, output, **pages.parts)
             if resume is None
@@ -90,12 +90,12 @@ def run(
         pages.open(job.setup)
         try:
             with RunConsole(out.console, job.setup.regions, quiet=quiet) as shown:
-                *_, finished = job.events([*pages.listeners, log, shown])
+                for _ in job.events([*pages.listeners, log, shown]):
+                    pass
         except KeyboardInterrupt:
             out.say(f"interrupted; carry on with: drake-screw run --resume {job.directory.path}")
             raise typer.Exit(130) from None
-        assert isinstance(finished, Finished)
-        summary = summarize_run(job, finished)
+        summary = summarize_run(job)
         show_summary(summary, out.console)
         out.write(summary)
         if pages.live is not None and out.console.is_terminal:

@@ -125,11 +125,6 @@ class TimedPlan:
     def __deepcopy__(self, _: object) -> TimedPlan:
         return self
 
-    @property
-    def begins(self) -> Array:
-        """(g + 1,) s, when each segment begins, and when the last one ends."""
-        return np.concatenate([[0.0], np.cumsum([piece.duration for piece in self.segments])])
-
     @cached_property
     def duration(self) -> float:
         """Length in s."""
@@ -190,18 +185,6 @@ def time_plan(
         pieces.append(_timed(X_WA, X_WB, s, q, arm, limits))
         start = q[-1]
     return TimedPlan(tuple(pieces))
-
-
-def largest_ratios(
-    plan: TimedPlan, velocity: ArrayLike, acceleration: ArrayLike, *, every: float = 1e-3
-) -> tuple[float, float]:
-    """The largest velocity and acceleration of a timed plan, over their limits (n,) or ().
-
-    Accelerations are difference quotients of the velocity over `every` seconds.
-    """
-    _, _, v = plan.sampled(every)
-    a = np.diff(v[:-1], axis=0) / every
-    return float((np.abs(v) / velocity).max()), float((np.abs(a) / acceleration).max())
 
 
 def _timed(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from drake_screw.assembly.setup import Setup
 from drake_screw.errors import RunDirectoryError
-from drake_screw.runs.directory import write_text
+from drake_screw.files import write_text
 from drake_screw.runs.instance_tables import outcomes_csv, read_instances
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from drake_screw.acquisition import Finished
-from drake_screw.runs.certificate import certificate, statement
+from drake_screw.errors import RunDirectoryError
+from drake_screw.runs.codec import plain
 from drake_screw.runs.run import Run
 
 
@@ -33,7 +33,7 @@ class RunSummary:
         seed: of all its random draws.
         status: "certified" or "insufficient".
         reason: why it ended.
-        certificate: what it states; see `drake_screw.runs.certificate`.
+        certificate: what it states, as in run.json.
         statement: the same in sentences.
         demonstrations: their names, in the order of use.
         rounds: in their order.
@@ -55,32 +55,36 @@ class RunSummary:
         return self.status == "certified"
 
 
-def summarize_run(run: Run, finished: Finished) -> RunSummary:
+def summarize_run(run: Run) -> RunSummary:
     """Sum a run up.
 
-    Args:
-        run: that has ended.
-        finished: its last event.
+    Raises:
+        RunDirectoryError: it has not ended.
     """
     record = run.directory.record
-    stated = certificate(run.setup, finished, record["rounds"])
+    if record.certificate is None:
+        raise RunDirectoryError(
+            f"this run has not finished; its status is '{record.status}'",
+            remedy=f"Finish it first: drake-screw run --resume {run.directory.path}",
+            file=run.directory.path,
+        )
     return RunSummary(
         directory=run.directory.path,
-        scenario=run.setup.scenario.name,
-        seed=run.setup.scenario.seed,
-        status=finished.status.value,
-        reason=finished.reason,
-        certificate=stated,
-        statement=tuple(statement(stated, finished.reason)),
-        demonstrations=tuple(entry["name"] for entry in record["demonstrations"]),
+        scenario=record.scenario,
+        seed=record.seed,
+        status=record.status.value,
+        reason=record.reason or "",
+        certificate=plain(record.certificate),
+        statement=record.certificate.statement,
+        demonstrations=tuple(entry.name for entry in record.demonstrations),
         rounds=tuple(
             RoundSummary(
-                demonstrations=entry["demonstrations"],
-                instances=sum(entry["samples"]),
-                weakest_region=entry["weakest_region"],
-                failure_rate=entry["failure_rates"][entry["weakest_region"]],
-                certified=entry["certified"],
+                demonstrations=entry.demonstrations,
+                instances=sum(entry.samples),
+                weakest_region=entry.weakest_region,
+                failure_rate=entry.failure_rates[entry.weakest_region],
+                certified=entry.certified,
             )
-            for entry in record["rounds"]
+            for entry in record.rounds
         ),
     )

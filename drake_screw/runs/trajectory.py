@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,8 +10,8 @@ import numpy as np
 
 from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
 from drake_screw.errors import RunDirectoryError, ScenarioError, unknown
-from drake_screw.execution import FORMATS, TimeLimits
-from drake_screw.execution.batch import plan_and_time
+from drake_screw.execution import FORMATS, time_plan
+from drake_screw.files import write_bytes
 from drake_screw.robot import Arm
 from drake_screw.runs.executions import (
     collision_free_planner,
@@ -83,22 +82,18 @@ def write_trajectory(
     planner = collision_free_planner(setup)
     outcomes = planner.any_success(demonstrations, X_WO[None], setup.workcell.start)[0]
     arm = setup.workcell.arm
-    chosen = demonstrations[int(np.argmax(outcomes.success))]
-    timed = None
-    if outcomes.any_success:
-        guides = chosen.transfer(X_WO)
-        timed = plan_and_time(arm, setup.robot.start, guides, TimeLimits())[1]
-    if timed is None:
+    if not outcomes.any_success:
         why = why_not(outcomes, demonstrations, X_WO, planner, setup)
         raise ScenarioError(
             f"no demonstration of this run gives a plan there: {why}",
             remedy="Choose another instance, or carry the run on with more demonstrations.",
         )
+    chosen = demonstrations[int(outcomes.best_attempt)]
+    plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start)
+    timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), chosen.transfer(X_WO)]), arm)
     content, output = FORMATS[format](timed, arm), Path(output)
-    temporary = output.with_name(f".{output.name}.part")
     try:
-        temporary.write_bytes(content)
-        os.replace(temporary, output)
+        write_bytes(output, content)
     except OSError as error:
         raise RunDirectoryError(
             f"cannot be written: {error.strerror}",

@@ -20,14 +20,15 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.scenario.loader import dump_scenario, load_scenario
-from drake_screw.studies.hidden_failures import draw_hidden_failure
+from drake_screw.files import file_hash, fresh_folder, write_text
 from drake_screw.processes import WorkerLost, share_out
-from drake_screw.runs.directory import SCENARIO, file_hash, write_text
+from drake_screw.runs.directory import SCENARIO
+from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.studies.experiment import Experiment, StudyRun, split
-from drake_screw.studies.table import HEADER, csv_text, read_runs, row, summary_csv
 from drake_screw.studies.figures import Distribution, save_distributions
+from drake_screw.studies.hidden_failures import draw_hidden_failure
+from drake_screw.studies.table import HEADER, csv_text, read_runs, row, summary_csv
 
 FORMAT = 1
 STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"
@@ -113,12 +114,16 @@ class Study:
             if of_K
         }
 
-    def _results(self, missing: Sequence[tuple[int, int]], workers: int | None) -> Iterator[StudyRun]:
+    def _results(
+        self, missing: Sequence[tuple[int, int]], workers: int | None
+    ) -> Iterator[StudyRun]:
         """Runs as they are finished; the arm's code is compiled here, and only once."""
         first = int(not self.experiment.setup.batch_planner.compiled)
         for K, run in missing[:first]:
             yield self.experiment.run(K, run)
-        build = partial(_experiment, self.path / SCENARIO) if workers != 1 else lambda: self.experiment
+        build = (
+            partial(_experiment, self.path / SCENARIO) if workers != 1 else lambda: self.experiment
+        )
         shared = share_out(_carry_out, missing[first:], build=build, workers=workers)
         try:
             for _, finished in shared:
@@ -176,7 +181,7 @@ def new_study(
     for part in (setup.strategy, setup.teacher, setup.initial):
         assert part is not None
     model = setup.workcell.model_file
-    path = output or _fresh(Path("studies") / scenario.name)
+    path = output or fresh_folder(Path("studies") / scenario.name)
     record = {
         "format": FORMAT,
         "scenario": scenario.name,
@@ -265,15 +270,6 @@ def numbers_of_regions(text: str) -> tuple[int, ...]:
         raise ScenarioError(
             f"'{text}' is not a list of numbers of regions", remedy="Write, say, 1,2,4,8,16."
         ) from error
-
-
-def _fresh(parent: Path) -> Path:
-    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-    path, count = parent / stamp, 1
-    while path.exists():
-        count += 1
-        path = parent / f"{stamp}_{count}"
-    return path
 
 
 def _now() -> str:

@@ -7,6 +7,7 @@ from drake_screw.acquisition import (
     DemonstrationAdded,
     DemonstrationRequested,
     Finished,
+    Lesson,
     RoundFinished,
     RoundStarted,
     Status,
@@ -139,3 +140,19 @@ def test_teachers_get_random_numbers_of_their_own(seed):
 
     run(Disks(radius=0.3), Drawing(), seed=seed, budget=5)
     assert len(set(draws)) == len(draws)
+
+
+def test_a_second_place_is_asked_for_with_other_random_numbers() -> None:
+    """A teacher that fails by bad luck must not fail by the same luck again."""
+    draws: dict[int, list[float]] = {}
+
+    class Unlucky(Obliging):
+        def demonstrate(self, suggestion, *, number, used, rng):
+            draws.setdefault(number, []).append(rng.random())
+            if len(draws[number]) < 3 and number > 0:
+                return Lesson(None, "missed")
+            return super().demonstrate(suggestion, number=number, used=used, rng=rng)
+
+    run(Disks(radius=0.3), Unlucky(), budget=3)
+    assert [len(draws[number]) for number in sorted(draws)] == [1, 3, 3]
+    assert len({value for values in draws.values() for value in values}) == 7

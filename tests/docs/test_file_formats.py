@@ -11,6 +11,7 @@ import pytest
 
 from drake_screw.execution.trials import trials_csv
 from drake_screw.planning import Cause
+from drake_screw.runs.codec import plain
 from drake_screw.runs.outcome_table import tabulate_outcomes
 from drake_screw.runs.run import Run, new_run
 from drake_screw.runs.trajectory import write_trajectory
@@ -53,7 +54,7 @@ def test_every_key_of_run_json(grid: Run) -> None:
 
 def test_the_example_of_a_demonstration_has_the_keys(grid: Run) -> None:
     example = json.loads(re.findall(r"```json\n(.*?)```", section("run.json"), re.DOTALL)[0])
-    assert example.keys() == grid.directory.record["demonstrations"][0].keys()
+    assert example.keys() == plain(grid.directory.record)["demonstrations"][0].keys()
 
 
 def test_every_file_of_a_run(grid: Run) -> None:

@@ -12,7 +12,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
 from drake_screw.execution import Phase, ScrewPlanExecutor, TimedPlan, Tolerances
-from drake_screw.execution.checks import apart
+from drake_screw.execution.monitoring import apart
 from drake_screw.screws import exp, pose
 from tests.execution.conftest import START
 

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import csv
+import io
+
 import numpy as np
 import pytest
 
@@ -66,3 +69,16 @@ def test_outcomes_are_written_as_codes():
     assert text == "x,y,a,b\n0.6,0.1,0:0,3:5\n0.7,0.2,1:n,2:c\n"
     x_y_yaw[1, 0, 2] = 0.5
     assert outcomes_csv(x_y_yaw, outcomes, ["a", "b"], ONE).startswith("x,y,yaw,a,b\n")
+
+
+def test_names_with_commas_stay_in_their_column():
+    outcomes = Outcomes(
+        np.array([[Cause.SUCCESS, Cause.UNREACHABLE]], "u1"),
+        np.array([[-1, 0]], "i2"),
+        np.full((1, 2), -1, "i1"),
+        np.ones((1, 2), "f4"),
+    )
+    names = ["demo, second try", 'the "good" one']
+    text = outcomes_csv(np.array([[[0.6, 0.1, 0.25]]]), outcomes, names, ONE)
+    (row,) = csv.DictReader(io.StringIO(text))
+    assert row == {"x": "0.6", "y": "0.1", names[0]: "0:0", names[1]: "1:n"}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -29,7 +28,6 @@ from drake_screw.errors import (
 )
 from drake_screw.resources import find_resource
 from drake_screw.runs.executions import execute, known_demonstrations
-from drake_screw.runs.inspection import open_inspection
 from drake_screw.runs.outcome_table import tabulate_outcomes
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.runs.trajectory import write_trajectory
@@ -162,9 +160,9 @@ def test_the_run_directory_keeps_the_recordings_of_the_other_robot(
         recording = read(library / demonstration.name, baxter)
         expected = demonstration_from_recording(recording, baxter.workcell.arm)
         np.testing.assert_array_equal(demonstration.X_OE, expected.X_OE)
-    inspection = open_inspection(finished)
-    tried = inspection.attempts(0, 0)[0]
-    found = inspection.outcomes(0, 0)
+    reader = open_run(finished).reader
+    tried = reader.attempts(0, 0)[0]
+    found = reader.outcomes(0, 0)
     assert tried.arm.joint_names == tuple(IIWA)
     assert (tried.failed_segment is None) == bool(found.success[0])
 
@@ -342,7 +340,7 @@ def test_people_who_led_baxter_teach_the_iiwa(shared: Path, tmp_path: Path) -> N
     X = run.setup.area.X_WO(rng.uniform(run.setup.area.lower, run.setup.area.upper, (2000, 1, 3)))
     served = run.setup.planner.any_success(end.demonstrations, X, run.setup.workcell.start)
     assert served.any_success.mean() >= scenario.coverage.beta
-    own = replace(scenario, recorded_on=None)
+    own = scenario.model_copy(update={"recorded_on": None})
     with pytest.raises(RecordingError, match="no column 'iiwa_joint_1'"):
         new_run(own, tmp_path / "own")
     assert not (tmp_path / "own").exists()

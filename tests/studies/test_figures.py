@@ -10,14 +10,13 @@ from matplotlib.figure import Figure
 
 from drake_screw.studies.figures import (
     Distribution,
+    comparison_figure,
     distributions_figure,
     draw_distribution,
-    comparison_figure,
-    save_distributions,
     save_comparison,
+    save_distributions,
 )
 from drake_screw.tasks import WorkArea, grid_regions
-
 from tests.visualization.conftest import BOWL
 
 FOUND = Distribution((3, 3, 2, 5, 3, 2), without=2)

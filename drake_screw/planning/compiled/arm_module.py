@@ -20,10 +20,10 @@ import llvmlite.binding  # type: ignore[import-untyped]
 import numba
 
 from drake_screw.planning import contract, outcomes
-from drake_screw.planning.compiled import crossing, lanes, lowering, rows, step_code
+from drake_screw.planning.compiled import crossing, lanes, lowering, rows, step_code, trace
 from drake_screw.planning.compiled.link_frames import LinkFrames
 
-_SOURCES = (contract, crossing, lanes, lowering, outcomes, rows)
+_SOURCES = (contract, crossing, lanes, lowering, outcomes, rows, trace)
 """Modules that are compiled into that of an arm."""
 
 _MODULE = '''"""Plans of one arm, {lanes} at a time; written by drake_screw.planning.compiled."""
