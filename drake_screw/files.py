@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import hashlib
 import io
 import os
@@ -27,6 +28,8 @@ def write_bytes(file: Path, content: bytes) -> None:
     Raises:
         OSError: it cannot be written.
     """
+    if file.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
     temporary = file.with_name(f".{file.name}.part")
     try:
         temporary.write_bytes(content)

@@ -11,9 +11,10 @@ from drake_screw.errors import ModelError
 from drake_screw.robot import RobotConfig
 from drake_screw.robot.workcell import add_robot
 from drake_screw.scenario.schema import Scenario
+from drake_screw.typing import PathLike
 
 
-def swap_model(scenario: Scenario, model: Path) -> Scenario:
+def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     """The scenario on another robot model.
 
     The model must have the arm's joints, the base and the end effector. Other joints that are
@@ -24,7 +25,7 @@ def swap_model(scenario: Scenario, model: Path) -> Scenario:
         ModelError: the model cannot be read or lacks the base, or it is one of the robot that the
             recordings were made on.
     """
-    block = scenario.robot.model_copy(update={"model": str(model.resolve())})
+    block = scenario.robot.model_copy(update={"model": str(Path(model).resolve())})
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
     add_robot(

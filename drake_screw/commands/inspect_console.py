@@ -1,4 +1,4 @@
-"""``drake-screw inspect``: a run's attempts in the terminal, and in the browser or on a page."""
+"""A run's attempts as seen in a terminal, beside the browser or a page."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ def inspect_run(
     reader = open_run(run).reader
     first = select(reader, reader.check_round(round), instance)
     if html is not None:
-        print_instance(reader, first, console)
         page = save_page(reader, first, html)
+        print_instance(reader, first, console)
         console.print(f"written: {page}, its numbers beside it (.csv, .json)", soft_wrap=True)
         return
     risk = warning(host)

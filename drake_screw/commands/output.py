@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import sys
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
-from enum import Enum
 from pathlib import Path
-from typing import Any
 
 from rich.console import Console
 
@@ -64,7 +58,9 @@ class Output:
         """
         if self._json is None:
             return
-        text = json.dumps(plain(result), indent=2, allow_nan=False) + "\n"
+        from pydantic_core import to_json
+
+        text = to_json(result, indent=2, inf_nan_mode="null").decode() + "\n"
         if self._json == STANDARD_OUTPUT:
             sys.stdout.write(text)
             return
@@ -74,25 +70,6 @@ class Output:
             write_text(Path(self._json), text)
         except OSError as error:
             raise _unwritable(Path(self._json), str(error.strerror)) from error
-
-
-def plain(value: Any) -> Any:
-    """A value as JSON has it: fields of dataclasses by name, arrays as lists, NaN as null."""
-    if is_dataclass(value):
-        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, Mapping):
-        return {str(name): plain(item) for name, item in value.items()}
-    if hasattr(value, "tolist"):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
 
 
 def _check(file: Path) -> None:

@@ -1,4 +1,4 @@
-"""``drake-screw report``: a finished run, told and drawn from its directory."""
+"""``drake-screw report``: a finished run, shown and drawn again from its directory."""
 
 from __future__ import annotations
 

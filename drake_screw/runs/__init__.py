@@ -1,1 +1,1 @@
-"""Runs: carried out, kept in a directory, read and summed up again."""
+"""Runs on disk: carried out, carried on, and read again."""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from drake_screw.runs.certificate import Certificate
+from drake_screw.errors import RunDirectoryError
+from drake_screw.runs.codec import plain
 from drake_screw.runs.run import Run
 
 
@@ -30,7 +33,7 @@ class RunSummary:
         seed: of all its random draws.
         status: "certified" or "insufficient".
         reason: why it ended.
-        certificate: what it states.
+        certificate: what it states, as in run.json.
         statement: the same in sentences.
         demonstrations: their names, in the order of use.
         rounds: in their order.
@@ -41,7 +44,7 @@ class RunSummary:
     seed: int
     status: str
     reason: str
-    certificate: Certificate
+    certificate: Mapping[str, Any]
     statement: tuple[str, ...]
     demonstrations: tuple[str, ...]
     rounds: tuple[RoundSummary, ...]
@@ -53,17 +56,26 @@ class RunSummary:
 
 
 def summarize_run(run: Run) -> RunSummary:
-    """Sum up a run that has ended."""
-    record, stated = run.directory.record, run.certificate
-    assert stated is not None
+    """Sum a run up.
+
+    Raises:
+        RunDirectoryError: it has not ended.
+    """
+    record = run.directory.record
+    if record.certificate is None:
+        raise RunDirectoryError(
+            f"this run has not finished; its status is '{record.status}'",
+            remedy=f"Finish it first: drake-screw run --resume {run.directory.path}",
+            file=run.directory.path,
+        )
     return RunSummary(
         directory=run.directory.path,
-        scenario=run.setup.scenario.name,
+        scenario=record.scenario,
         seed=record.seed,
-        status=record.status,
+        status=record.status.value,
         reason=record.reason or "",
-        certificate=stated,
-        statement=stated.statement,
+        certificate=plain(record.certificate),
+        statement=record.certificate.statement,
         demonstrations=tuple(entry.name for entry in record.demonstrations),
         rounds=tuple(
             RoundSummary(

@@ -1,1 +1,1 @@
-"""Studies: many runs of a scenario, to measure how many demonstrations they take."""
+"""Studies: many runs of a scenario, shared out among processes, and what they show."""

@@ -29,6 +29,7 @@ from drake_screw.studies.experiment import Experiment, StudyRun, split
 from drake_screw.studies.figures import Distribution, save_distributions
 from drake_screw.studies.hidden_failures import draw_hidden_failure
 from drake_screw.studies.table import HEADER, read_runs, row, summary_csv
+from drake_screw.typing import PathLike
 
 FORMAT = 1
 STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"
@@ -151,13 +152,13 @@ class Study:
 
 
 def new_study(
-    scenario: Scenario, regions: Sequence[int], runs: int, output: Path | None = None
+    scenario: Scenario, regions: Sequence[int], runs: int, output: PathLike | None = None
 ) -> Study:
     """Check a scenario to the bottom, then make a study directory.
 
     Args:
         scenario: what to study; its own regions are not used, its seed is the study's.
-        regions: numbers of regions K, see `study_runs.split`.
+        regions: numbers of regions K, see `experiment.split`.
         runs: for each K, at least 1.
         output: directory, which must not exist or be empty; ``studies/<name>/<time>`` if None.
 
@@ -181,7 +182,7 @@ def new_study(
     for part in (setup.strategy, setup.teacher, setup.initial):
         assert part is not None
     model = setup.workcell.model_file
-    path = output or fresh_folder(Path("studies") / scenario.name)
+    path = fresh_folder(Path("studies") / scenario.name) if output is None else Path(output)
     record = {
         "format": FORMAT,
         "scenario": scenario.name,
@@ -219,12 +220,13 @@ def new_study(
     return Study(path, load_scenario(path / SCENARIO), record)
 
 
-def open_study(path: Path) -> Study:
+def open_study(path: PathLike) -> Study:
     """Open a study directory, to carry it on or to draw its pictures again.
 
     Raises:
         RunDirectoryError: it is not one, is damaged, or the robot model is not the same any more.
     """
+    path = Path(path)
     file = path / STUDY
     if not file.is_file():
         raise RunDirectoryError(

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drake_screw.commands.output import plain
-from drake_screw.execution.status import Phase
+from drake_screw.commands.output import Output
+from drake_screw.studies.findings import Finding, Findings
 from tests.commands.conftest import QUICK, Command
 
 PAGE = Path(__file__).parents[2] / "docs" / "file_formats.md"
@@ -138,13 +138,11 @@ def test_study(command: Command, library: Path) -> None:
         assert sum(found["counts"].values()) == found["certified"] <= found["runs"] == 2
 
 
-def test_values_become_plain() -> None:
-    values = {
-        "a": float("nan"),
-        1: Path("x"),
-        "b": (np.int64(2), np.array([1.5, np.inf]), Phase.DONE),
-    }
-    assert plain(values) == {"a": None, "1": "x", "b": [2, [1.5, None], Phase.DONE.value]}
+def test_what_is_not_known_is_null(capsys: pytest.CaptureFixture[str]) -> None:
+    never = Finding(K=1, runs=2, certified=0, mean=float("nan"), most=0, counts={})
+    Output("-").write(Findings(Path("x"), "pouring", 0, "eprocess", (never,)))
+    found = json.loads(capsys.readouterr().out)
+    assert (found["directory"], found["regions"][0]["mean"]) == ("x", None)
 
 
 def test_a_result_that_fails_leaves_the_old_file(command: Command) -> None:

@@ -77,10 +77,10 @@ def strip(record: dict) -> dict:
 
 
 def test_an_interrupted_run_resumes_to_the_same_result(command, monkeypatch):
-    from drake_screw.runs import run as runner
+    from drake_screw.acquisition import Evaluator
 
     command("run", "scooping", *QUICK, "--seed", 1, "--output", "whole")
-    original = runner.Evaluator.evaluate
+    original = Evaluator.evaluate
 
     def interrupted(self, round, demonstrations, attempt):
         if round == 1:
@@ -88,7 +88,7 @@ def test_an_interrupted_run_resumes_to_the_same_result(command, monkeypatch):
         return original(self, round, demonstrations, attempt)
 
     with monkeypatch.context() as patch:
-        patch.setattr(runner.Evaluator, "evaluate", interrupted)
+        patch.setattr(Evaluator, "evaluate", interrupted)
         code, out, _ = command("run", "scooping", *QUICK, "--seed", 1, "--output", "parts")
     assert code == 130
     assert "--resume parts" in out

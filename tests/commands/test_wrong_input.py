@@ -83,7 +83,7 @@ EVALUATE = ["evaluate", "pouring", "--demonstrations", "nowhere"]
         (["runn", "pouring"], "run"),
         ([*RUN, "--set", "nonsense"], "expected key.path=value"),
         ([*RUN, "--set", "seed=[1"], "seed=[1"),
-        ([*RUN, "--seed", "seven"], "seven"),
+        ([*RUN, "--seed", "seven"], "--seed"),
         ([*RUN, "--demonstrations", "places.csv"], "places.csv"),
         ([*RUN, "--meshcat", "--host", "192.0.2.1"], "cannot serve on 192.0.2.1"),
         ([*RUN, "--json", "nowhere/result.json"], "there is no folder 'nowhere'"),
@@ -121,7 +121,7 @@ def test_wrong_input_ends_with_2_and_one_message(
     [
         ("run", ["--resume"], "has ended"),
         ("inspect", ["--round", "99", "--html", "x.html"], "no round 99"),
-        ("inspect", ["--round", "one"], "one"),
+        ("inspect", ["--round", "one"], "--round"),
         ("inspect", ["--instance", "-3", "--html", "x.html"], "no instance -3"),
         ("inspect", ["--html", "x.csv"], "would be overwritten"),
         ("inspect", ["--port", "99999"], "cannot serve"),

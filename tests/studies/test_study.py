@@ -12,7 +12,7 @@ from rich.console import Console
 
 from drake_screw.acquisition import Finished, RoundFinished, Suggestion, acquire
 from drake_screw.assembly.setup import Setup
-from drake_screw.commands.study import show_study
+from drake_screw.commands.study_console import show_study
 from drake_screw.demonstrations import write_recording
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.scenario.loader import load_scenario
