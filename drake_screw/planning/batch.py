@@ -104,11 +104,15 @@ class BatchPlanner:
             `all_outcomes`, to the last bit.
 
         Raises:
-            ValueError: as for `all_outcomes`.
+            ValueError: as for `all_outcomes`; or an index is not that of a demonstration.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         which = np.asarray(which, dtype=np.int64)
         self._check(demonstrations, X_WO, q_start)
+        if which.shape != X_WO.shape[:1] or not np.isin(which, range(len(demonstrations))).all():
+            raise ValueError(
+                f"which must be {len(X_WO)} indices from 0 to {len(demonstrations) - 1}, it is {which}"
+            )
         if len(X_WO) == 0:
             return ()
         failed = self._failed_start(q_start, (len(X_WO),))
