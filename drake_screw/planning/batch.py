@@ -109,10 +109,9 @@ class BatchPlanner:
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         which = np.asarray(which, dtype=np.int64)
         self._check(demonstrations, X_WO, q_start)
-        if which.shape != X_WO.shape[:1] or not np.isin(which, range(len(demonstrations))).all():
-            raise ValueError(
-                f"which must be {len(X_WO)} indices from 0 to {len(demonstrations) - 1}, it is {which}"
-            )
+        N, D = len(X_WO), len(demonstrations)
+        if which.shape != (N,) or ((which < 0) | (which >= D)).any():
+            raise ValueError(f"which must be {N} indices from 0 to {D - 1}, it is {which}")
         if len(X_WO) == 0:
             return ()
         failed = self._failed_start(q_start, (len(X_WO),))
