@@ -104,11 +104,14 @@ class BatchPlanner:
             `all_outcomes`, to the last bit.
 
         Raises:
-            ValueError: as for `all_outcomes`.
+            ValueError: as for `all_outcomes`; or an index is not that of a demonstration.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         which = np.asarray(which, dtype=np.int64)
         self._check(demonstrations, X_WO, q_start)
+        N, D = len(X_WO), len(demonstrations)
+        if which.shape != (N,) or ((which < 0) | (which >= D)).any():
+            raise ValueError(f"which must be {N} indices from 0 to {D - 1}, it is {which}")
         if len(X_WO) == 0:
             return ()
         failed = self._failed_start(q_start, (len(X_WO),))

@@ -136,6 +136,13 @@ def test_a_start_outside_the_limits_is_where_the_plan_ends(case, lessons, planne
         np.testing.assert_array_equal(plan.q, outside[None])
 
 
+@pytest.mark.parametrize("which", [[0, 1], [0, 1, 3], [0, -1, 2], [[0, 1, 2]]])
+def test_indices_must_be_those_of_demonstrations(case, lessons, planned, which) -> None:
+    planner, X_WO, _, _ = planned
+    with pytest.raises(ValueError, match="which must be 3 indices from 0 to 2"):
+        planner.plans(lessons, X_WO[:3], case[1], which)
+
+
 @pytest.mark.parametrize("u", [0.0, 0.2, 0.5, 0.9, 1.0])
 def test_between_its_ends_a_step_is_known_to_fourth_order(u: float) -> None:
     """On q' = q^2 with q(0) = 1, which is 1 / (1 - s): halving a step divides the error by 32."""
