@@ -30,7 +30,9 @@ def ask(teacher, x, y, used=()):
     )
 
 
-def test_the_nearest_of_the_region_comes_first_even_if_another_region_has_a_nearer_one(teacher) -> None:
+def test_the_nearest_of_the_region_comes_first_even_if_another_region_has_a_nearer_one(
+    teacher,
+) -> None:
     lesson = ask(teacher, 0.51, 0.2)
     assert lesson.recording.name == "near"
     assert "nearest unused recording of region 1" in lesson.remark
@@ -87,7 +89,9 @@ def test_of_another_robots_recordings_those_that_work_come_first(teacher) -> Non
     assert ask(foreign, 0.6, 0.2, used=LIBRARY[2:]).recording.name == "far"
 
 
-def test_where_none_works_the_nearest_is_given_though_it_stood_outside_the_work_area(teacher) -> None:
+def test_where_none_works_the_nearest_is_given_though_it_stood_outside_the_work_area(
+    teacher,
+) -> None:
     lesson = ask(replace(teacher, foreign=Elsewhere()), 0.99, 0.1)
     assert lesson.recording.name == "near"
     assert "no unused recording works there" in lesson.remark
