@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from drake_screw.acquisition import Evaluator
-from drake_screw.acquisition import evaluation as module
+from drake_screw.acquisition import grid_evaluator as module
 from drake_screw.bandits import Goal, make_strategy
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import BatchPlanner

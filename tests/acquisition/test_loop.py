@@ -14,8 +14,7 @@ from drake_screw.acquisition import (
     acquire,
 )
 from drake_screw.bandits import Goal, make_strategy
-
-from .conftest import Disks, Obliging, learn, recording_at
+from tests.acquisition.conftest import Disks, Obliging, learn, recording_at
 
 
 def run(disks, teacher, **options):

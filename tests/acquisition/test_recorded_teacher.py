@@ -7,8 +7,7 @@ import pytest
 
 from drake_screw.acquisition import RecordedTeacher, Suggestion
 from drake_screw.tasks import grid_regions
-
-from .conftest import Disks, recording_at
+from tests.acquisition.conftest import Disks, recording_at
 
 LIBRARY = (
     recording_at("near", 0.6, 0.2),

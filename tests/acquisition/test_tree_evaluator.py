@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import RoundFinished, Status, TreeEvaluator, acquire
-from drake_screw.acquisition import tree_evaluation as module
+from drake_screw.acquisition import tree_evaluator as module
 from drake_screw.bandits import CertifyOrSplit, Goal
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.screws import pose_from_planar
 from drake_screw.tasks import ObjectArea, WorkArea, grid_regions
-
-from .conftest import Obliging, learn
+from tests.acquisition.conftest import Obliging, learn
 
 BOWL = ObjectArea("bowl", (0.0, 0.0, 0.0), (1.0, 1.0, 0.0), 0.0)
 CUP = ObjectArea("cup", (2.0, 0.5, -0.5), (2.4, 0.5, 0.5), 0.0)

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from bernoulli import GOAL, stopping_probability
 
 from drake_screw.bandits.clopper_pearson import at_most
 from drake_screw.bandits.decision_boundary import ClearBoundary, clear_boundary, deciding_size
 from drake_screw.bandits.mixture import ln_e_clear, ln_e_flag
 from drake_screw.bandits.spending import attempt_delta, look_delta
+from tests.bandits.bernoulli import GOAL, stopping_probability
 
 C = float(np.log(1 / GOAL.delta))
 C_FLAG = float(np.log(16 / GOAL.delta))

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from bernoulli import GOAL, arms, at_most_plausible, worst
 
 from drake_screw.bandits import BanditError, Strategy, Verdict
 from drake_screw.bandits.eprocess import EProcess
+from tests.bandits.bernoulli import GOAL, arms, at_most_plausible, worst
 
 ONE_ROUND = EProcess(GOAL, spend=False)
 UNRANKED = EProcess(GOAL, spend=False, rank_budget=0)

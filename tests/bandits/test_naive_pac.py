@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bernoulli import GOAL, arms, worst
 
 from drake_screw.bandits import Goal
 from drake_screw.bandits.naive_pac import NaivePac, most_failures, sample_size
+from tests.bandits.bernoulli import GOAL, arms, worst
 
 
 @pytest.mark.parametrize(("K", "n"), [(16, 32_308), (64, 39_239)])

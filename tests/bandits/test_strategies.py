@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bernoulli import GOAL, arms, at_most_plausible, worst
 
 from drake_screw.bandits import STRATEGIES, BanditError, Goal, clopper_pearson, make_strategy
 from drake_screw.errors import DrakeScrewError
+from tests.bandits.bernoulli import GOAL, arms, at_most_plausible, worst
 
 SEQUENTIAL = [name for name in STRATEGIES if name not in ("naive_pac", "median_elimination")]
 

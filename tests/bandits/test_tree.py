@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bernoulli import GOAL, at_most_plausible
 
 from drake_screw.bandits import (
     BanditError,
@@ -15,6 +14,7 @@ from drake_screw.bandits import (
     TreeVerdict,
     cell_number,
 )
+from tests.bandits.bernoulli import GOAL, at_most_plausible
 
 SMALLEST = 1 / 256
 Rate = Callable[[np.ndarray], np.ndarray]  # points (n, d) -> their failure probabilities (n,)

@@ -15,8 +15,7 @@ from drake_screw.scenario.report_page import write_report
 from drake_screw.screws import sclerp_position
 from drake_screw.visualization.attempt import DONE, FAILED
 from drake_screw.visualization.charts import STATUS_COLORS
-
-from .conftest import Browser, program
+from tests.browser.conftest import Browser, program
 
 HAND = "workcell/baxter/left_hand"
 SERVE = """

@@ -8,8 +8,7 @@ import pytest
 from drake_screw.acquisition import Finished, RegionsEvaluated, RoundFinished
 from drake_screw.scenario.live import LiveView
 from drake_screw.scenario.runner import open_run
-
-from .conftest import program
+from tests.browser.conftest import program
 
 TEACH = """
 import sys

@@ -23,8 +23,7 @@ from drake_screw.acquisition.simulated import SimulatedTeacher
 from drake_screw.demonstrations import write_recording
 from drake_screw.scenario.inspection import open_inspection
 from drake_screw.scenario.runner import open_run
-
-from .conftest import Browser
+from tests.browser.conftest import Browser
 
 LEAST = 120.0
 """s. Patience with a command, which has to start, compile and evaluate."""

@@ -14,8 +14,7 @@ from pydrake.systems.framework import Context
 from drake_screw.execution import Phase, ScrewPlanExecutor, TimedPlan, Tolerances
 from drake_screw.execution.checks import apart
 from drake_screw.screws import exp, pose
-
-from .conftest import START
+from tests.execution.conftest import START
 
 PERIOD = 0.005
 

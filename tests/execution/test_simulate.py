@@ -12,8 +12,7 @@ from pydrake.systems.primitives import ConstantValueSource
 from drake_screw.execution import Phase, ScrewPlanExecutor, TimedPlan, build_station, simulate
 from drake_screw.robot import ObjectConfig, TableConfig
 from drake_screw.screws import pose
-
-from .conftest import START
+from tests.execution.conftest import START
 
 POST = ObjectConfig("post", 0.03, 1.0)
 BOWL = ObjectConfig("bowl", 0.08, 0.06)

@@ -6,7 +6,6 @@ from itertools import product
 
 import numpy as np
 import pytest
-from compiled_arms import Bench, bench, random_chain
 from scipy.integrate import RK45
 
 from drake_screw.planning.compiled import rows as r
@@ -15,6 +14,7 @@ from drake_screw.planning.compiled.step_code import ERROR, TABLEAU, Settings
 from drake_screw.planning.contract import RATE_LIMIT, RESIDUAL_LIMIT
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import adjoint, exp, log
+from tests.planning.compiled_arms import Bench, bench, random_chain
 
 L = r.LANES
 KINDS = list(product(range(1, 9), [0.0, 0.35], [False, True]))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from compiled_arms import run_in_python
 
 from drake_screw.planning.compiled.emitter import Emitter
 from drake_screw.planning.compiled.functions import cos_sin, log_between
 from drake_screw.planning.compiled.matrices import Factor, determinant
 from drake_screw.screws import exp, log
+from tests.planning.compiled_arms import run_in_python
 
 LANES = 16
 

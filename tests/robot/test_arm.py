@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
-from small_arms import PLANAR, SEVEN, SLIDING, JointText, arm_of, plant_of, sdf
 
 from drake_screw.errors import ModelError
 from drake_screw.robot import Arm
 from drake_screw.screws import exp, inverse, log
+from tests.robot.small_arms import PLANAR, SEVEN, SLIDING, JointText, arm_of, plant_of, sdf
 
 NAMES = [joint.name for joint in SEVEN]
 ARMS = {"7R": SEVEN, "with prismatic joints": SLIDING, "planar 3R": PLANAR}

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from small_arms import PLANAR, SEVEN, SLIDING, JointText, arm_of, plant_of
 
 from drake_screw.robot import Arm, ScrewChain
 from drake_screw.screws import exp, inverse, log
+from tests.robot.small_arms import PLANAR, SEVEN, SLIDING, JointText, arm_of, plant_of
 
 ARMS = {"7R": SEVEN, "with prismatic joints": SLIDING, "planar 3R": PLANAR}
 

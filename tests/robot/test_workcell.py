@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from small_arms import PLANAR, JointText, sdf
 
 from drake_screw.errors import ModelError
 from drake_screw.robot import (
@@ -17,6 +16,7 @@ from drake_screw.robot import (
     build_workcell,
 )
 from drake_screw.screws import exp, pose
+from tests.robot.small_arms import PLANAR, JointText, sdf
 
 NAMES = ("p1", "p2", "p3")
 SPHERE = "<sphere><radius>0.05</radius></sphere>"

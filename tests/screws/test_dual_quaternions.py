@@ -7,7 +7,6 @@ import pytest
 import pytransform3d.transformations as pt
 from hypothesis import given
 from hypothesis import strategies as st
-from motions import PI, many, parts, poses, random_poses, twists
 
 from drake_screw.screws import (
     dual_quaternion_conjugate,
@@ -21,6 +20,7 @@ from drake_screw.screws import (
     sclerp,
     screw_from_twist,
 )
+from tests.screws.motions import PI, many, parts, poses, random_poses, twists
 
 
 @many

@@ -7,7 +7,6 @@ import pytest
 import pytransform3d.transformations as pt
 from hypothesis import given
 from hypothesis import strategies as st
-from motions import PI, angles, directions, many, parts, poses, random_poses, seeds, some, twists
 
 from drake_screw.screws import (
     Screw,
@@ -20,6 +19,18 @@ from drake_screw.screws import (
     sclerp_position,
     screw_between,
     screw_from_twist,
+)
+from tests.screws.motions import (
+    PI,
+    angles,
+    directions,
+    many,
+    parts,
+    poses,
+    random_poses,
+    seeds,
+    some,
+    twists,
 )
 
 

@@ -7,7 +7,6 @@ import pytest
 import pytransform3d.transformations as pt
 from hypothesis import given
 from hypothesis import strategies as st
-from motions import PI, angles, directions, many, poses, random_poses, seeds, twists
 from scipy.linalg import expm
 
 from drake_screw.screws import (
@@ -24,6 +23,7 @@ from drake_screw.screws import (
     skew,
     translation_distance,
 )
+from tests.screws.motions import PI, angles, directions, many, poses, random_poses, seeds, twists
 
 IDENTITY = np.eye(4)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given
-from motions import PI, angles, directions, many, random_poses
 
 from drake_screw.screws import (
     quaternion_conjugate,
@@ -17,6 +16,7 @@ from drake_screw.screws import (
     skew,
 )
 from drake_screw.screws.rotations import cross
+from tests.screws.motions import PI, angles, directions, many, random_poses
 
 
 @many

@@ -32,9 +32,8 @@ from drake_screw.visualization.charts import joint_chart, joint_strip, work_area
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.inspector_panel import drawn_state
 from drake_screw.visualization.linkage import Linkage
-
-from .conftest import BOWL
-from .test_scene import BAXTER, TABLE
+from tests.visualization.conftest import BOWL
+from tests.visualization.test_scene import BAXTER, TABLE
 
 OBJECTS = (ObjectConfig("bowl", 0.08, 0.06),)
 

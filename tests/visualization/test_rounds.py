@@ -7,8 +7,7 @@ from drake_screw.bandits import Cell
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.tasks import BoxRegions, ObjectArea, WorkArea, box_regions, grid_regions
 from drake_screw.visualization.rounds import cells, details, headline, instance_causes, sample
-
-from .conftest import BOWL
+from tests.visualization.conftest import BOWL
 
 
 def outcomes(cause: list[list[int]], segment: list[list[int]], fraction: float = 0.5) -> Outcomes:

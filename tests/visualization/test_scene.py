@@ -10,8 +10,7 @@ from drake_screw.errors import ModelError
 from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
 from drake_screw.tasks import ObjectArea, WorkArea, grid_regions
 from drake_screw.visualization import Scene
-
-from .conftest import BOWL
+from tests.visualization.conftest import BOWL
 
 ARM = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
 BAXTER = RobotConfig("baxter", ARM, "left_hand", (0.0, -0.5, 0.0, 1.0, 0.0, 0.5, 0.0))

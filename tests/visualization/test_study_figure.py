@@ -17,8 +17,7 @@ from drake_screw.visualization.study_figure import (
     save_distributions,
     save_pocket,
 )
-
-from .conftest import BOWL
+from tests.visualization.conftest import BOWL
 
 FOUND = Distribution((3, 3, 2, 5, 3, 2), without=2)
 
