@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from drake_screw.acquisition import Evaluator
-from drake_screw.acquisition import evaluation as module
+from drake_screw.acquisition import grid_evaluator as module
 from drake_screw.bandits import Goal, make_strategy
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import BatchPlanner
@@ -35,7 +35,7 @@ def setup(progress=None):
     return evaluator, (demonstration,)
 
 
-def test_counts_agree_with_what_planning_says():
+def test_counts_agree_with_what_planning_says() -> None:
     evaluator, demonstrations = setup()
     evaluation, verdict = evaluator.evaluate(0, demonstrations, 1)
     expected = evaluation.x_y_yaw[:, 0, 0] >= 1.0
@@ -46,7 +46,7 @@ def test_counts_agree_with_what_planning_says():
     assert np.array_equal(evaluator.regions.index(evaluation.x_y_yaw), evaluation.region)
 
 
-def test_batches_do_not_matter(monkeypatch):
+def test_batches_do_not_matter(monkeypatch) -> None:
     evaluator, demonstrations = setup()
     whole, _ = evaluator.evaluate(1, demonstrations, 1)
     monkeypatch.setattr(module, "BATCH", 37)
@@ -55,7 +55,7 @@ def test_batches_do_not_matter(monkeypatch):
     assert np.array_equal(whole.outcomes.cause, parts.outcomes.cause)
 
 
-def test_progress_counts_up_to_the_verdict():
+def test_progress_counts_up_to_the_verdict() -> None:
     seen = []
     evaluator, demonstrations = setup(seen.append)
     _, verdict = evaluator.evaluate(0, demonstrations, 1)
@@ -65,7 +65,7 @@ def test_progress_counts_up_to_the_verdict():
     assert np.array_equal(seen[-1].failures, verdict.failures)
 
 
-def test_without_demonstrations_everything_fails():
+def test_without_demonstrations_everything_fails() -> None:
     evaluator, _ = setup()
     evaluation, verdict = evaluator.evaluate(0, (), 1)
     assert evaluation.failed.all()

@@ -29,30 +29,32 @@ def ask(teacher, x, y, used=()):
     )
 
 
-def test_the_nearest_of_the_region_comes_first_even_if_another_region_has_a_nearer_one(teacher):
+def test_the_nearest_of_the_region_comes_first_even_if_another_region_has_a_nearer_one(
+    teacher,
+) -> None:
     lesson = ask(teacher, 0.51, 0.2)
     assert lesson.recording.name == "near"
     assert "nearest unused recording of region 1" in lesson.remark
     assert "9 cm" in lesson.remark
 
 
-def test_used_recordings_are_not_given_again(teacher):
+def test_used_recordings_are_not_given_again(teacher) -> None:
     assert ask(teacher, 0.51, 0.2, used=(LIBRARY[0],)).recording.name == "far"
 
 
-def test_another_region_helps_out_and_it_says_so(teacher):
+def test_another_region_helps_out_and_it_says_so(teacher) -> None:
     lesson = ask(teacher, 0.51, 0.2, used=LIBRARY[:2])
     assert lesson.recording.name == "elsewhere"
     assert "no unused recording" in lesson.remark
 
 
-def test_it_says_when_it_has_none_left(teacher):
+def test_it_says_when_it_has_none_left(teacher) -> None:
     lesson = ask(teacher, 0.5, 0.2, used=LIBRARY)
     assert lesson.recording is None
     assert lesson.remark == "all 3 recordings are used"
 
 
-def test_a_request_may_bring_its_own_regions(teacher):
+def test_a_request_may_bring_its_own_regions(teacher) -> None:
     place = np.array([[0.51, 0.2, 0.0]])
     whole = grid_regions(teacher.regions.area, {})
     suggestion = Suggestion(0, place, regions=whole)
@@ -76,7 +78,7 @@ class Elsewhere:
         return np.array([recording.name in self.working for recording in recordings])
 
 
-def test_of_another_robots_recordings_those_that_work_come_first(teacher):
+def test_of_another_robots_recordings_those_that_work_come_first(teacher) -> None:
     foreign = replace(teacher, foreign=Elsewhere("far", "elsewhere"))
     lesson = ask(foreign, 0.6, 0.2)
     assert lesson.recording.name == "elsewhere"
@@ -86,7 +88,9 @@ def test_of_another_robots_recordings_those_that_work_come_first(teacher):
     assert ask(foreign, 0.6, 0.2, used=LIBRARY[2:]).recording.name == "far"
 
 
-def test_where_none_works_the_nearest_is_given_though_it_stood_outside_the_work_area(teacher):
+def test_where_none_works_the_nearest_is_given_though_it_stood_outside_the_work_area(
+    teacher,
+) -> None:
     lesson = ask(replace(teacher, foreign=Elsewhere()), 0.99, 0.1)
     assert lesson.recording.name == "near"
     assert "no unused recording works there" in lesson.remark

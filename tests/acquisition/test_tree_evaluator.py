@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import RoundFinished, Status, TreeEvaluator, acquire
-from drake_screw.acquisition import tree_evaluation as module
+from drake_screw.acquisition import tree_evaluator as module
 from drake_screw.bandits import CertifyOrSplit, Goal
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.planning import Cause, Outcomes
@@ -68,7 +68,7 @@ FIRST = (demonstration_at("first", (0.2, 0.2, 0.0)),)
 BOTH = (*FIRST, demonstration_at("second", (0.8, 0.5, 0.0)))
 
 
-def test_counts_regions_and_instances_agree():
+def test_counts_regions_and_instances_agree() -> None:
     evaluation, verdict = evaluator().evaluate(0, FIRST, 1)
     assert not verdict.certified
     served = (evaluation.x_y_yaw[:, 0, :2] < 0.95).all(axis=1)
@@ -86,7 +86,7 @@ def test_counts_regions_and_instances_agree():
     assert verdict.lower[verdict.region] > 0.05 > verdict.coverage
 
 
-def test_batches_do_not_matter_but_rounds_and_seeds_do(monkeypatch):
+def test_batches_do_not_matter_but_rounds_and_seeds_do(monkeypatch) -> None:
     whole, _ = evaluator().evaluate(0, FIRST, 1)
     other, _ = evaluator(seed=4).evaluate(0, FIRST, 1)
     later, _ = evaluator().evaluate(1, FIRST, 1)
@@ -98,7 +98,7 @@ def test_batches_do_not_matter_but_rounds_and_seeds_do(monkeypatch):
         assert not np.isin(different.x_y_yaw[:, 0, 0], whole.x_y_yaw[:, 0, 0]).any()
 
 
-def test_progress_counts_the_whole_area():
+def test_progress_counts_the_whole_area() -> None:
     seen = []
     evaluation, _ = evaluator(progress=seen.append).evaluate(0, FIRST, 1)
     assert [e.samples.shape for e in seen] == [(1,)] * len(seen)
@@ -106,7 +106,7 @@ def test_progress_counts_the_whole_area():
     assert seen[-1].failures[0] == np.count_nonzero(evaluation.failed)
 
 
-def test_what_was_cleared_is_not_drawn_in_again():
+def test_what_was_cleared_is_not_drawn_in_again() -> None:
     rounds = evaluator(smallest=1 / 4, reach=2.0, seed=0, planner=Edges)
     first, before = rounds.evaluate(0, FIRST, 1)
     cleared = [cell for cell in first.frontier if cell.cleared]
@@ -121,7 +121,7 @@ def test_what_was_cleared_is_not_drawn_in_again():
     assert after.coverage >= GOAL.beta
 
 
-def test_a_remembered_round_leads_on_as_the_round_itself():
+def test_a_remembered_round_leads_on_as_the_round_itself() -> None:
     rounds = evaluator()
     first, _ = rounds.evaluate(0, FIRST, 1)
     expected, verdict = rounds.evaluate(1, BOTH, 2)
@@ -133,13 +133,13 @@ def test_a_remembered_round_leads_on_as_the_round_itself():
     assert same.claim == verdict.claim
 
 
-def test_without_demonstrations_the_whole_area_is_asked_for():
+def test_without_demonstrations_the_whole_area_is_asked_for() -> None:
     evaluation, verdict = evaluator().evaluate(0, (), 1)
     assert evaluation.failed.all()
     assert evaluation.partition(grid_regions(ONE, {})).name(verdict.region) == "the whole work area"
 
 
-def test_a_tree_of_other_axes_is_refused():
+def test_a_tree_of_other_axes_is_refused() -> None:
     tree = CertifyOrSplit(GOAL, 3, 1 / 4, 0.5)
     with pytest.raises(ValueError, match="3 axes, the work area 2"):
         TreeEvaluator(Nearby(1.0), ONE, np.zeros(1), tree, 0)
@@ -156,7 +156,7 @@ class ObligingWithAll(Obliging):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_run_with_two_objects_certifies_what_is_true(seed):
+def test_a_run_with_two_objects_certifies_what_is_true(seed) -> None:
     """The objects move along x, y and x, yaw: four axes."""
     rounds, teacher = evaluator(TWO, reach=0.5, seed=seed), ObligingWithAll()
     start = grid_regions(TWO, {})
@@ -177,7 +177,7 @@ def test_a_run_with_two_objects_certifies_what_is_true(seed):
     assert np.mean(~outcomes.any_success) <= 1 - GOAL.beta
 
 
-def test_a_small_pocket_of_failure_is_found_where_it_is():
+def test_a_small_pocket_of_failure_is_found_where_it_is() -> None:
     """A corner that is a sixtieth of the area, which 95 % of the whole would not show."""
     near = (demonstration_at("near", (0.43, 0.43, 0.0)),)
     rounds = evaluator(reach=0.4475, smallest=1 / 256)

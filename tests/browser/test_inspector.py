@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from drake_screw.visualization.charts import STATUS_COLORS
 from matplotlib.colors import to_rgb
 
 from drake_screw.runs.run import open_run
