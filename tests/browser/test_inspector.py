@@ -6,13 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from drake_screw.visualization.charts import STATUS_COLORS
 from matplotlib.colors import to_rgb
 
 from drake_screw.runs.run import open_run
 from drake_screw.screws import sclerp_position
 from drake_screw.visualization.attempt import DONE, FAILED
-from drake_screw.web.charts import STATUS_COLORS
+from drake_screw.visualization.palette import STATUS_COLORS
 from drake_screw.web.inspector_page import save_page
 from drake_screw.web.report_page import write_report
 from drake_screw.web.selection import select

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from drake_screw.scenario.runner import open_run
 
 from drake_screw.acquisition import Finished, RegionsEvaluated, RoundFinished
 from drake_screw.runs.run import open_run

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from drake_screw.scenario.runner import open_run
 
 from drake_screw.acquisition import Suggestion
 from drake_screw.acquisition.simulated import SimulatedTeacher
