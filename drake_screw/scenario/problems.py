@@ -16,7 +16,7 @@ _BOUNDS = ("greater_than", "greater_than_equal", "less_than")
 
 
 def problems_of(error: ValidationError, data: Any) -> list[Problem]:
-    """One problem for each value that is wrong.
+    """One problem for each value that is wrong; none for values inside it.
 
     A key that is missing is passed over where an unknown key was probably meant to be it.
 
@@ -35,7 +35,9 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
         problem = _problem(detail, data)
         if not (detail["type"] == "missing" and problem.keys in meant):
             problems.setdefault(problem.keys, problem)
-    return list(problems.values())
+    return [
+        p for keys, p in problems.items() if not any(keys[:n] in problems for n in range(len(keys)))
+    ]
 
 
 def _problem(detail: ErrorDetails, data: Any) -> Problem:
@@ -58,7 +60,8 @@ def _problem(detail: ErrorDetails, data: Any) -> Problem:
             return Problem(keys, f"expected the {meaning}; found '{value}'")
         case kind if kind in _BOUNDS:
             bounds = " and ".join(limits(schema)).replace("at least", "of at least")
-            message = f"expected a number {bounds}, found {value}"
+            found = _found(value).removeprefix("the number ")
+            message = f"expected a number {bounds}, found {found}"
             return Problem(keys, message, f"Meaning: {meaning}.")
     return _mismatch(keys, schema, value)
 
@@ -72,7 +75,7 @@ def _mismatch(keys: Keys, schema: Schema, value: Any) -> Problem:
     fitting = [s for s in alternatives(schema) if s.get("type") == "array"]
     wanted = describe(fitting[0] if fitting and isinstance(value, tuple) else schema)
     remedy = None
-    if isinstance(value, str) and "number" in wanted:
+    if isinstance(value, str) and wanted.startswith(("a number", "a whole number")):
         if re.fullmatch(r"[-+.0-9eE]*[0-9][-+.0-9eE]*", value):
             remedy = "Write it without quotes."
     elif wanted == "text" and isinstance(value, bool | int | float):

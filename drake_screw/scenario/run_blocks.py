@@ -146,6 +146,8 @@ class TeacherBlock(Block):
             for name, value in data.items()
             if name not in cls.model_fields
         ]
+        if errors and "kind" not in data:
+            errors.append(InitErrorDetails(type="missing", loc=("kind",), input=data))
         if errors:
             raise ValidationError.from_exception_data(cls.__name__, errors)
         return data
