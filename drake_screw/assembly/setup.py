@@ -14,16 +14,15 @@ from drake_screw.acquisition import Evaluator, Teacher, TreeEvaluator
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
 from drake_screw.assembly.recorder import Recorder
+from drake_screw.assembly.sanity import check_reach, check_start
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Recording, SegmentationConfig
-from drake_screw.errors import ScenarioError
 from drake_screw.planning import BatchPlanner, Outcomes, Planner
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.plugins import find
 from drake_screw.robot import (
     ObjectConfig,
     RobotConfig,
-    ScrewChain,
     TableConfig,
     Workcell,
     build_workcell,
@@ -31,9 +30,6 @@ from drake_screw.robot import (
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, free_axes
 from drake_screw.typing import PathLike
-
-KEEP_OFF = 0.5
-"""m. A hand is never farther than this from the object that it works on."""
 
 
 class Parts(TypedDict, total=False):
@@ -118,17 +114,8 @@ class Setup:
             ScenarioError: the start is outside the limits, or the work area out of reach.
         """
         workcell = build_workcell(self.robot, table=self.table, objects=self.objects)
-        margin = workcell.arm.margin(workcell.start)
-        if (margin <= 0.0).any():
-            i = int(np.argmin(margin))
-            arm = workcell.arm
-            raise ScenarioError(
-                f"robot.start: {arm.joint_names[i]} starts at {workcell.start[i]:.4f} rad, outside "
-                f"its limits {arm.lower[i]:.4f} .. {arm.upper[i]:.4f}",
-                remedy="Start from a configuration that is strictly inside all joint limits.",
-                file=self.scenario.source,
-            )
-        self._check_reach(workcell.arm.screw_chain())
+        check_start(self.scenario, workcell.arm)
+        check_reach(self.scenario, workcell.arm, self.area)
         return workcell
 
     @cached_property
@@ -301,16 +288,3 @@ class Setup:
     def learn(self, recording: Recording) -> Demonstration:
         """Turn a recording into a demonstration, by the kinematics of the arm it was made on."""
         return self.recorder_of(recording.robot).learn(recording, self.segmentation)
-
-    def _check_reach(self, chain: ScrewChain) -> None:
-        for i, item in enumerate(self.area.objects):
-            nearest = np.clip(chain.shoulder[:2], item.lower[:2], item.upper[:2])
-            away = float(np.linalg.norm(np.append(nearest, item.z) - chain.shoulder))
-            if away > chain.reach + KEEP_OFF:
-                raise ScenarioError(
-                    f"objects.{i}: the work area of '{item.name}' is out of reach: its nearest "
-                    f"point is {away:.2f} m from the shoulder, the hand gets {chain.reach:.2f} m",
-                    remedy="Move the work area towards the robot; x, y and z are in metres, "
-                    f"seen from '{self.scenario.robot.base}'.",
-                    file=self.scenario.source,
-                )
