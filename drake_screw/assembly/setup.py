@@ -279,7 +279,7 @@ class Setup:
         )
 
     def evaluator(self, progress: Progress | None = None) -> Evaluator | TreeEvaluator:
-        """What carries out the rounds of the scenario; `progress` is told of every batch."""
+        """What carries out the rounds of the scenario; `progress` is called with every batch."""
         start, seed = self.workcell.start, self.scenario.seed
         if self.tree is not None:
             return TreeEvaluator(self.planner, self.area, start, self.tree, seed, progress)

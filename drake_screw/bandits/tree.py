@@ -1,6 +1,6 @@
 """Certify or split: a box of any dimension, cut more finely only where something fails.
 
-A grid fine enough to see a small pocket of failures has too many regions once several objects may
+A grid fine enough to see a small part that fails has too many regions once several objects may
 move. The tree below is fixed in advance: the unit box, halved along its axes in cyclic order. A
 cell that cannot be cleared as a whole hands its samples down to its two halves. That is valid
 because which cells exist does not depend on the samples, and the samples of one epoch that fall in
@@ -75,7 +75,7 @@ class CertifyOrSplit:
     guarantee: ClassVar[str] = (
         "With probability 1 - delta in the whole run a certificate is true: every dyadic cell of "
         "at least the smallest volume fails at most max(level, 1 - beta) of the time, the whole "
-        "box at most 1 - beta; a pocket that straddles cells can be missed."
+        "box at most 1 - beta; a failing part that straddles cells can be missed."
     )
 
     goal: Goal

@@ -179,7 +179,7 @@ def headline(attempt: Attempt) -> str:
 
 
 def describe_segment(attempt: Attempt, segment: int) -> str:
-    """A segment's screw in numbers for people."""
+    """A segment's screw in words and numbers."""
     screw = attempt.screws
     angle, along = float(screw.angle[segment]), float(screw.translation[segment])
     turn = f"{np.degrees(angle):.1f}°"

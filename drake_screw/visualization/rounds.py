@@ -80,7 +80,7 @@ class Sample:
 
     @property
     def statement(self) -> str:
-        """How much of the round is shown, for people."""
+        """How much of the round is shown, in words."""
         if len(self.cause) == self.total:
             return f"all {self.total:,} instances"
         return f"{len(self.cause):,} of {self.total:,} instances, drawn at random"
