@@ -86,36 +86,43 @@ class Kinematics:
 
 
 def kinematics(frames: LinkFrames, q: Array) -> tuple[Kinematics, Array]:
-    """An arm at joint positions q (n,), and its X_BE as three rows (3, 4) of [R | p].
+    """An arm at joint positions q (n,), and its X_BE as three rows (3, 4) of [R | p]."""
+    few, X_CE = len(q) < 6, frames.X_CE
+    base, links = link_poses(frames, q)
+    R_ME, p_ME = links[-1].R @ X_CE[:3, :3], links[-1].move(X_CE[:3, 3]).p
+    about = p_ME if few else np.zeros(3)
+    columns = [_twist(link, turns) for link, turns in zip(links, frames.revolute, strict=True)]
+    J = _shifted(np.stack(columns, axis=1), about)
+    gram = J.T @ J if few else J @ J.T
+    damping = DAMPING_REDUNDANT if few and frames.redundant else DAMPING
+    factor = Factor.of(gram + damping * np.eye(len(gram)))
+    X_BE = base.R.T @ np.column_stack([R_ME, p_ME - base.p])
+    return Kinematics(q, base, J, about, factor), X_BE
 
-    Goes from the middle link to both ends.
+
+def link_poses(frames: LinkFrames, q: Array) -> tuple[Pose, list[Pose]]:
+    """The base frame B and the frames C_0, ..., C_{n-1} of the links, seen from the middle link.
+
+    A point that is fixed to link i at p_CP is at ``links[i].move(p_CP).p`` in M.
     """
-    n, middle, X_CE = len(q), frames.middle, frames.X_CE
+    n, middle = len(q), frames.middle
     base, tip = Pose(), Pose()
-    columns = [np.zeros(6)] * n
+    inward, outward = [], []
     for i in range(middle, n):
-        columns[i] = _column(frames, tip, i)
-        tip = _joint(frames, tip, i, q[i], 1.0)
+        tip = _across(frames, tip, i, q[i], 1.0)
+        outward.append(tip)
         if i < n - 1:
             tip = tip.turn_x(*frames.tilt[i]).move(frames.shift[i])
     for i in reversed(range(middle)):
         c, s = frames.tilt[i]
         base = base.turn_x(c, -s).move(-frames.shift[i])
-        columns[i] = _column(frames, base, i)
-        base = _joint(frames, base, i, q[i], -1.0)
-    p_ME = tip.move(X_CE[:3, 3]).p
-    few = n < 6
-    about = p_ME if few else np.zeros(3)
-    J = _shifted(np.stack(columns, axis=1), about)
-    gram = J.T @ J if few else J @ J.T
-    damping = DAMPING_REDUNDANT if few and frames.redundant else DAMPING
-    factor = Factor.of(gram + damping * np.eye(len(gram)))
-    R_ME_p_BE = np.column_stack([tip.R @ X_CE[:3, :3], p_ME - base.p])
-    return Kinematics(q, base, J, about, factor), base.R.T @ R_ME_p_BE
+        inward.append(base)
+        base = _across(frames, base, i, q[i], -1.0)
+    return base, inward[::-1] + outward
 
 
-def _joint(frames: LinkFrames, pose: Pose, i: int, q: Value, direction: float) -> Pose:
-    """Across joint i, from its parent side to its child side or back."""
+def _across(frames: LinkFrames, pose: Pose, i: int, q: Value, direction: float) -> Pose:
+    """From one side of joint i to the other: in direction 1 from P_i to C_i, in -1 back."""
     turn = frames.turn[i]
     if frames.revolute[i]:
         c, s = cos_sin(q + turn)
@@ -124,12 +131,10 @@ def _joint(frames: LinkFrames, pose: Pose, i: int, q: Value, direction: float) -
     return moved.turn_z(np.cos(turn), direction * np.sin(turn))
 
 
-def _column(frames: LinkFrames, axis: Pose, i: int) -> Array:
-    """The twist (6,) about M's origin of joint i, which turns about or slides along z."""
-    z = axis.R[:, 2]
-    if not frames.revolute[i]:
-        return np.concatenate([np.zeros(3), z])
-    return np.concatenate([z, np.cross(axis.p, z)])
+def _twist(link: Pose, turns: bool) -> Array:
+    """The twist (6,) about M's origin of a joint that turns about its link's z axis, or slides."""
+    z = link.R[:, 2]
+    return np.concatenate([z, np.cross(link.p, z)] if turns else [np.zeros(3), z])
 
 
 def _shifted(V: Array, p: Array) -> Array:
@@ -138,10 +143,10 @@ def _shifted(V: Array, p: Array) -> Array:
     return np.concatenate([w, V[3:] + np.cross(w, p, axisa=0, axisc=0)])
 
 
-def orientation(before: Array, after: Array) -> Value:
+def orientation(J_before: Array, J_after: Array) -> Value:
     """det(J_before^T J_after) of Jacobians (6, n), n <= 6.
 
     It is the inner product of the volumes that the columns span (Cauchy and Binet), which turns
     negative where a path passes through a singularity in between.
     """
-    return determinant(before.T @ after)
+    return determinant(J_before.T @ J_after)

@@ -140,7 +140,7 @@ class Kept:
 
     def keep(self, values: Any) -> Any:
         """What `aim` has of a value, an array, or a dataclass of such."""
-        if is_dataclass(values):
+        if is_dataclass(values) and not isinstance(values, Expression):
             parts = {f.name: self.keep(getattr(values, f.name)) for f in fields(values)}
             return replace(cast(Any, values), **parts)
         return np.frompyfunc(self._keep, 1, 1)(values)
@@ -186,9 +186,9 @@ def _aim(b: Block, arm: Kinematics, settings: Settings) -> Program:
     update(slice(rows.q, rows.q_stage), b[rows.q_stage : rows.rate])
     if n <= 6:
         update(r.VOLUME_START, arm.factor.determinant)
-        for j, k in np.argwhere(varies(arm.J.T)):
+        for j, k in np.argwhere(varies(arm.J.T)).tolist():
             update(rows.columns + 6 * j + k, arm.J[k, j])
-    limit = settings.motion / (reduce(maximum, abs(slope), 0.0) + 1e-9)
+    limit = settings.motion / (reduce(maximum, abs(slope)) + 1e-9)
     first = settings.first_motion / settings.motion * limit
     step = where(begins, first, minimum(b[r.NEXT_STEP], limit))
     b[r.STEP] = left / ceil(left / step)
@@ -204,9 +204,9 @@ def judge(lower: Array, upper: Array, settings: Settings) -> Program:
     q0, q3 = b[rows.q : rows.q_stage], b[rows.q_stage : rows.rate]
     q1, q2 = q0 + 1 / 3 * step * slopes[0], q3 - 1 / 3 * step * slopes[6]
     least, most = (f(f(q1, q2), q3) for f in (minimum, maximum))
-    margin = reduce(minimum, minimum(least - lower, upper - most), 1.0)
+    margin = reduce(minimum, minimum(least - lower, upper - most))
 
-    error = step * reduce(maximum, abs(np.array(ERROR) @ slopes), 0.0) / settings.tolerance + 1e-12
+    error = step * reduce(maximum, abs(np.array(ERROR) @ slopes)) / settings.tolerance + 1e-12
     root8 = sqrt(sqrt(sqrt(error)))
     change = minimum(5.0, maximum(0.2, 0.9 / (root8 * sqrt(root8))))
     rate2_start, *between, rate2_end = np.sum(slopes * slopes, axis=1)
@@ -216,8 +216,7 @@ def judge(lower: Array, upper: Array, settings: Settings) -> Program:
         ahead = minimum(ahead, step * shrunk / maximum(1.0 - shrunk, 1e-30))
 
     bound = settings.rate_max**2 * hand2
-    between_max: Expression = reduce(maximum, between, 0.0)
-    stray = (between_max > bound) & (rate2_end <= bound)
+    stray = (reduce(maximum, between) > bound) & (rate2_end <= bound)
     stray |= ~(sum(between, rate2_end) >= 0.0)
     if n <= 6:
         stray |= b[r.ORIENTATION] < -ORIENTATION_MIN
