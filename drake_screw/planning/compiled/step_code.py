@@ -9,6 +9,10 @@ The pair is Dormand and Prince's 5(4), "A family of embedded Runge-Kutta formula
     aim                                 take good steps, and aim again at the guiding pose
 
 Between judge and aim the lanes that need a decision get it one by one (lanes.py).
+
+Of the arm, blend and judge know the number of joints and the limits alone. As plain compiled code,
+with loops over the joints, they take longer: measured for seven joints, judge 95 ns a lane instead
+of 17, of 340 for a whole step, and blend 5.7 instead of 3.8.
 """
 
 from __future__ import annotations
