@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import Suggestion
-from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
+from drake_screw.errors import DrakeScrewError, PluginError, RunDirectoryError, ScenarioError
 from drake_screw.runs.executions import execute, known_demonstrations, placed
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.runs.trajectory import write_trajectory
@@ -115,7 +115,7 @@ def test_an_export_where_there_is_no_plan_says_why(run, tmp_path):
 
 
 def test_an_unknown_format_names_those_there_are(run, tmp_path):
-    with pytest.raises(ScenarioError, match="Did you mean 'baxter-csv'") as error:
+    with pytest.raises(PluginError, match="Did you mean 'baxter-csv'") as error:
         write_trajectory(run, PLACE, "baxter_csv", tmp_path / "plan")
     assert "ros-trajectory" in str(error.value)
 

@@ -51,10 +51,8 @@ class Kernel:
     ) -> None:
         settings = settings or Settings()
         frames = link_frames(screws, home)
-        text, self._count = arm_module.source(
-            frames, list(map(float, lower)), list(map(float, upper)), settings
-        )
-        self._module = arm_module.load(text)
+        programs, self._count = arm_module.programs(frames, lower, upper, settings)
+        self._module = arm_module.load(programs)
         rows = Rows(len(screws))
         self._rows = Places(rows.q, rows.q_stage, rows.kept, self._count)
         self._X_BW = np.linalg.inv(frames.X_WB)

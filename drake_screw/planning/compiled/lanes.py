@@ -18,6 +18,7 @@ from drake_screw.planning.compiled.rows import (
     EVENT,
     HAND,
     LANES,
+    MARGIN,
     NEXT_STEP,
     OFF_PLACE,
     OFF_TURN,
@@ -26,7 +27,6 @@ from drake_screw.planning.compiled.rows import (
     RATE_END,
     RATE_START,
     RESIDUAL,
-    ROOM,
     STEP,
     TARGET,
     at,
@@ -255,7 +255,7 @@ def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     if b[at(ACCEPTED, i)] == 0.0 or start2 > bound or residuals:
         return UNREACHABLE, -1, progress, 0.0
     near_singular = (1.0 - start2 / bound) / (1.0 - start2 / end2) if end2 > bound else 2.0
-    if b[at(ROOM, i)] <= 0.0:
+    if b[at(MARGIN, i)] <= 0.0:
         joint, u = first_crossing(b, i, rows, problem.bounds.limits)
         if joint >= 0 and u <= near_singular:
             return JOINT_LIMIT, joint, progress + u * step, u
