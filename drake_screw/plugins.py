@@ -59,7 +59,7 @@ _SINGULAR: Mapping[Group, str] = {
     "motions": "motion",
     "teachers": "teacher",
     "recording_formats": "recording format",
-    "exporters": "exporter",
+    "exporters": "export format",
 }
 
 

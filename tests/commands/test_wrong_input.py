@@ -130,7 +130,7 @@ def test_wrong_input_ends_with_2_and_one_message(
         (
             "export",
             ["--instance", "0.9", "0.3", "--output", "x", "--format", "csv"],
-            "no format 'csv'",
+            "no export format 'csv'",
         ),
         ("export", ["--instance", "5", "5", "--output", "x"], "no demonstration of this run gives"),
         ("export", ["--instance", "0.9", "0.3", "--output", "."], "cannot be written"),
