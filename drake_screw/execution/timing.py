@@ -31,7 +31,9 @@ UNLIMITED = 1e3
 
 FINE = 1e-3  # s, between points at which a time law is checked
 EVERY = 4  # of them one is kept
-GRID = 120  # points along a segment at which Toppra keeps the limits
+GRIDS = (120, 127, 139, 151, 163)
+"""Points along a segment at which Toppra keeps the limits. Now and then its arithmetic fails at one
+of them, on a path that has a time law: then the next number is tried."""
 RESERVE = 0.99  # part of the limits that Toppra may use
 STILL = 1e-6  # rad, joint motion of a segment that does not move
 
@@ -247,14 +249,14 @@ def _spline(s: Array, q: Array) -> PiecewisePolynomial:
 def _fastest(
     path: PiecewisePolynomial, velocity: Array, acceleration: Array
 ) -> PiecewisePolynomial:
-    grid = np.linspace(0.0, 1.0, GRID)
-    toppra = Toppra(path, _joints(len(velocity)), grid)
-    toppra.AddJointVelocityLimit(-velocity, velocity)
-    toppra.AddJointAccelerationLimit(-acceleration, acceleration)
-    law = toppra.SolvePathParameterization()
-    if law is None:
-        raise RuntimeError("Toppra found no time law for a path that starts and ends at rest")
-    return law
+    for count in GRIDS:
+        toppra = Toppra(path, _joints(len(velocity)), np.linspace(0.0, 1.0, count))
+        toppra.AddJointVelocityLimit(-velocity, velocity)
+        toppra.AddJointAccelerationLimit(-acceleration, acceleration)
+        law = toppra.SolvePathParameterization()
+        if law is not None:
+            return law
+    raise RuntimeError("Toppra found no time law for a path that starts and ends at rest")
 
 
 @lru_cache

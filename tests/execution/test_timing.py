@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drake_screw.execution import TimedPlan, TimeLimits
+from drake_screw.execution import TimedPlan, TimeLimits, timing
 from drake_screw.execution.timing import TimedSegment, time_plan
 from drake_screw.planning import Plan, ReferencePlanner
 from drake_screw.planning.outcomes import Cause, one_outcome
@@ -151,3 +151,22 @@ def test_a_plan_is_its_own_copy_and_an_empty_one_is_empty(timed):
     assert copy.deepcopy(timed) is timed
     assert TimedPlan(()).duration == 0.0
     assert replace(timed, segments=timed.segments[:1]).duration < timed.duration
+
+
+def test_where_toppras_arithmetic_fails_other_grid_points_are_taken(
+    time_it, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    expected, tried = time_it(TimeLimits()), []
+
+    class Fragile(timing.Toppra):
+        def __init__(self, path: object, plant: object, gridpoints: np.ndarray) -> None:
+            super().__init__(path, plant, gridpoints)
+            tried.append(len(gridpoints))
+
+        def SolvePathParameterization(self) -> object:
+            return None if tried[-1] == timing.GRIDS[0] else super().SolvePathParameterization()
+
+    monkeypatch.setattr(timing, "Toppra", Fragile)
+    found = time_it(TimeLimits())
+    assert tried == list(timing.GRIDS[:2]) * len(expected.segments)
+    assert found.duration == pytest.approx(expected.duration, rel=1e-2)
