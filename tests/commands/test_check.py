@@ -7,7 +7,7 @@ import re
 from tests.commands.conftest import NAIVE
 
 
-def test_check_tells_what_would_run(command):
+def test_check_tells_what_would_run(command) -> None:
     code, out, _ = command("check", "pouring", *NAIVE)
     assert code == 0
     assert "K = 16" in out

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 
-def test_evaluate_writes_a_code_for_each_instance_and_demonstration(command, library, places):
+def test_evaluate_writes_a_code_for_each_instance_and_demonstration(
+    command, library, places
+) -> None:
     code, out, _ = command(
         "evaluate", "pouring", "--demonstrations", library, "--instances", places,
         "--output", "out.csv",
@@ -24,7 +26,7 @@ def test_evaluate_writes_a_code_for_each_instance_and_demonstration(command, lib
     assert "3 instances x 3 demonstrations" in out
 
 
-def test_another_model_needs_only_the_arm(command, library, places, shared):
+def test_another_model_needs_only_the_arm(command, library, places, shared) -> None:
     calibrated = shared / "reference" / "baxter_left_calibrated.sdf"
     code, _, err = command(
         "evaluate", "pouring", "--demonstrations", library, "--instances", places,
@@ -35,7 +37,9 @@ def test_another_model_needs_only_the_arm(command, library, places, shared):
 
 
 @pytest.mark.parametrize("task", ["pouring", "scooping"])
-def test_evaluate_agrees_with_the_outcomes_of_another_planner(command, shared, task, tmp_path):
+def test_evaluate_agrees_with_the_outcomes_of_another_planner(
+    command, shared, task, tmp_path
+) -> None:
     lines = (shared / "reference" / f"outcomes_{task}.csv").read_text().splitlines()
     theirs = [line.split(",") for line in lines]
     places = tmp_path / "places.csv"

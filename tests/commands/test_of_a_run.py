@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.commands.conftest import QUICK
 
 
-def test_report_draws_again(command):
+def test_report_draws_again(command) -> None:
     command("run", "pouring", *QUICK, "--output", "here")
     for file in [*Path("here").rglob("*.png"), Path("here/meshcat.html")]:
         file.unlink()
@@ -21,7 +21,7 @@ def test_report_draws_again(command):
     assert Path("here/run.json").read_text() == record
 
 
-def test_a_run_can_be_looked_at_exported_and_executed(command):
+def test_a_run_can_be_looked_at_exported_and_executed(command) -> None:
     command("run", "pouring", *QUICK, "--output", "here", "-q")
     code, out, _ = command("inspect", "here", "--html", "page.html", "--round", 1)
     assert code == 0

@@ -12,7 +12,7 @@ import pytest
 from tests.commands.conftest import NAIVE, QUICK
 
 
-def test_run_leaves_a_certified_run(command, tmp_path):
+def test_run_leaves_a_certified_run(command, tmp_path) -> None:
     code, out, err = command("run", "pouring", *QUICK, "--seed", 3)
     assert (code, err) == (0, "")
     assert "certificate" in out
@@ -43,7 +43,7 @@ def test_run_leaves_a_certified_run(command, tmp_path):
     assert not list(path.rglob("*.part"))
 
 
-def test_a_run_ends_with_1_when_the_budget_does(command):
+def test_a_run_ends_with_1_when_the_budget_does(command) -> None:
     code, out, _ = command(
         "run", "pouring", *QUICK, *NAIVE, "--set", "demonstrations.budget=1", "--output", "here"
     )
@@ -56,7 +56,7 @@ def test_a_run_ends_with_1_when_the_budget_does(command):
     assert record["certificate"]["coverage"] == pytest.approx(max(0, 1 - 0.15 - worst))
 
 
-def test_recordings_are_asked_and_run_out(command, library):
+def test_recordings_are_asked_and_run_out(command, library) -> None:
     code, out, _ = command(
         "run", "pouring", "--demonstrations", library, "--output", "here",
         "--set", "coverage.beta=0.98", "--set", "coverage.epsilon=0.015",
@@ -76,7 +76,7 @@ def strip(record: dict) -> dict:
     return {k: v for k, v in record.items() if k not in times}
 
 
-def test_an_interrupted_run_resumes_to_the_same_result(command, monkeypatch):
+def test_an_interrupted_run_resumes_to_the_same_result(command, monkeypatch) -> None:
     from drake_screw.acquisition import Evaluator
 
     command("run", "scooping", *QUICK, "--seed", 1, "--output", "whole")
@@ -108,13 +108,13 @@ def test_an_interrupted_run_resumes_to_the_same_result(command, monkeypatch):
 
 
 @pytest.mark.skipif(os.getuid() == 0, reason="root may write everywhere")
-def test_an_unwritable_output_is_refused_as_a_user(command, tmp_path):
+def test_an_unwritable_output_is_refused_as_a_user(command, tmp_path) -> None:
     tmp_path.chmod(0o500)
     code, _, err = command("run", "pouring", "--output", tmp_path / "sub")
     assert (code, "cannot be written" in err) == (2, True)
 
 
-def test_an_output_that_cannot_be_made_is_refused(command):
+def test_an_output_that_cannot_be_made_is_refused(command) -> None:
     Path("file").write_text("in the way")
     code, _, err = command("run", "pouring", "--output", "file/sub")
     assert code == 2

@@ -7,7 +7,7 @@ from pathlib import Path
 from tests.commands.conftest import QUICK
 
 
-def test_a_study_can_be_small(command, library):
+def test_a_study_can_be_small(command, library) -> None:
     code, out, _ = command(
         "study", "pouring", "--demonstrations", library, "--regions", "1,2", "--runs", 2,
         "--workers", 1, "--output", "study", *QUICK,

@@ -46,7 +46,9 @@ def without_column(lines):
         (without_column, r"joint_angles\.csv:1: no column 'left_e0'"),
     ],
 )
-def test_bad_recordings_are_refused_with_their_place(command, library, tmp_path, change, expected):
+def test_bad_recordings_are_refused_with_their_place(
+    command, library, tmp_path, change, expected
+) -> None:
     spoilt = spoil(library, tmp_path / "spoilt", change)
     code, out, err = command("run", "pouring", "--demonstrations", spoilt)
     assert code == 2

@@ -13,7 +13,7 @@ from drake_screw.demonstrations.baxter_csv import COLUMNS
 from drake_screw.execution.trajectory_formats import PERIOD, baxter_csv, npz, ros_trajectory
 
 
-def test_baxter_csv_round_trips_through_our_reader(timed, arm, tmp_path):
+def test_baxter_csv_round_trips_through_our_reader(timed, arm, tmp_path) -> None:
     (tmp_path / "joint_angles.csv").write_bytes(baxter_csv(timed, arm))
     pose = "\n".join(",".join(str(v) for v in row) for row in np.eye(4).tolist())
     (tmp_path / "object_poses.csv").write_text(pose + "\n")
@@ -29,7 +29,7 @@ def test_baxter_csv_round_trips_through_our_reader(timed, arm, tmp_path):
     assert len(found) > 0.8 * len(t)
 
 
-def test_baxter_csv_has_all_that_the_playback_program_wants(timed, arm, robot):
+def test_baxter_csv_has_all_that_the_playback_program_wants(timed, arm, robot) -> None:
     lines = baxter_csv(timed, arm).decode().splitlines()
     assert lines[0].split(",") == ["time", *COLUMNS]
     table = np.array([[float(v) for v in line.split(",")] for line in lines[1:]])
@@ -46,7 +46,7 @@ def test_baxter_csv_has_all_that_the_playback_program_wants(timed, arm, robot):
     np.testing.assert_array_equal(columns["right_gripper"], 100.0)
 
 
-def test_ros_trajectory_is_a_message(timed, arm):
+def test_ros_trajectory_is_a_message(timed, arm) -> None:
     message = yaml.safe_load(ros_trajectory(timed, arm))
     assert message["joint_names"] == list(arm.joint_names)
     points = message["points"]
@@ -59,7 +59,7 @@ def test_ros_trajectory_is_a_message(timed, arm):
     assert points[0]["velocities"] == pytest.approx([0.0] * 7)
 
 
-def test_npz_holds_the_arrays(timed, arm):
+def test_npz_holds_the_arrays(timed, arm) -> None:
     with np.load(io.BytesIO(npz(timed, arm))) as data:
         t, q, v = timed.sampled(PERIOD)
         np.testing.assert_array_equal(data["t"], t)
@@ -72,7 +72,7 @@ def test_npz_holds_the_arrays(timed, arm):
         assert data["s"].max() == pytest.approx(1.0)
 
 
-def test_an_arm_that_is_not_baxters_gets_its_own_columns(seven_timed):
+def test_an_arm_that_is_not_baxters_gets_its_own_columns(seven_timed) -> None:
     timed, arm = seven_timed
     header = baxter_csv(timed, arm).decode().splitlines()[0]
     assert header == "time," + ",".join(arm.joint_names)

@@ -46,25 +46,25 @@ def trials(executed) -> list[Trial]:
     ]
 
 
-def test_jobs_are_executed(executed):
+def test_jobs_are_executed(executed) -> None:
     assert len(executed) == 1
     assert executed[0].report.flawless
 
 
-def test_logs_come_back_thinned_out_with_both_ends(executed):
+def test_logs_come_back_thinned_out_with_both_ends(executed) -> None:
     t = executed[0].t
     assert t[0] == 0.0
     assert t[-1] == executed[0].report.time
     assert len(t) == len(executed[0].q) < 200
 
 
-def test_other_processes_answer_the_same(config, plan, guides, executed):
+def test_other_processes_answer_the_same(config, plan, guides, executed) -> None:
     jobs = [Job(plan, guides, X_WO)] * 2
     for execution in execute_all(config, jobs, workers=2):
         assert execution.report == executed[0].report
 
 
-def test_the_table_has_a_row_for_each_trial(trials):
+def test_the_table_has_a_row_for_each_trial(trials) -> None:
     rows = list(csv.DictReader(io.StringIO(trials_csv(trials, AREA))))
     assert [row["status"] for row in rows] == ["done", "failed", "no plan"]
     assert [row["region"] for row in rows] == ["3", "4", "5"]
@@ -78,7 +78,7 @@ def test_the_table_has_a_row_for_each_trial(trials):
     assert rows[2]["tracking_mm"] == ""
 
 
-def test_the_summary_counts_and_names_what_went_wrong(trials):
+def test_the_summary_counts_and_names_what_went_wrong(trials) -> None:
     text = str(summarize(trials))
     assert "3 instances, 2 executed" in text
     assert "done                       1 of 2" in text
@@ -90,11 +90,11 @@ def test_the_summary_counts_and_names_what_went_wrong(trials):
     assert "region 3" not in text
 
 
-def test_nothing_executed_is_said_too(trials):
+def test_nothing_executed_is_said_too(trials) -> None:
     assert str(summarize(trials[2:])).splitlines()[0] == "1 instances, 0 executed"
 
 
-def test_the_recording_is_one_page_with_every_execution(config, executed):
+def test_the_recording_is_one_page_with_every_execution(config, executed) -> None:
     shown = (executed[0], X_WO)
     one = recording_html([shown], config.robot, objects=config.objects)
     two = recording_html([shown, shown], config.robot, objects=config.objects)

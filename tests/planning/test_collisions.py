@@ -63,7 +63,7 @@ def some_places(N: int, seed: int = 0) -> np.ndarray:
     return placed(*(AT + rng.uniform([-0.08, -0.1, 0.0], [0.08, 0.1, 0.0], (N, 3))))
 
 
-def test_paths_end_where_the_reference_planners_do(workcell, batch):
+def test_paths_end_where_the_reference_planners_do(workcell, batch) -> None:
     arm, X_WO = workcell.arm, some_places(3)
     plans = plans_of(batch, ABOVE, X_WO)
     reference = ReferencePlanner(arm, step=0.02)
@@ -73,7 +73,7 @@ def test_paths_end_where_the_reference_planners_do(workcell, batch):
         np.testing.assert_allclose(plans[i].q[-1], plan.q[-1], atol=2e-4)
 
 
-def test_paths_stay_on_the_screws_through_all_guiding_poses(batch, workcell):
+def test_paths_stay_on_the_screws_through_all_guiding_poses(batch, workcell) -> None:
     X_WO = some_places(4)
     for plan, guides in zip(plans_of(batch, THROUGH, X_WO), THROUGH.transfer(X_WO), strict=True):
         assert len(plan.q) == len(plan.s) == len(plan.segment)
@@ -86,7 +86,7 @@ def test_paths_stay_on_the_screws_through_all_guiding_poses(batch, workcell):
         assert rotation_angle(X_WE, X_WS).max() < 1e-3
 
 
-def test_no_instances_make_no_paths(checker, batch):
+def test_no_instances_make_no_paths(checker, batch) -> None:
     plans = plans_of(batch, ABOVE, some_places(3)[:0])
     assert plans == ()
     found = checker.first_collisions(plans, some_places(3)[:0])
@@ -106,7 +106,7 @@ def test_no_instances_make_no_paths(checker, batch):
     ],
     ids=lambda shape: type(shape).__name__,
 )
-def test_spheres_cover_shapes(shape, rng):
+def test_spheres_cover_shapes(shape, rng) -> None:
     half = half_extents(shape)
     p = rng.uniform(-half, half, (20_000, 3))
     match shape:
@@ -125,7 +125,7 @@ def test_spheres_cover_shapes(shape, rng):
     assert radius <= max(1.3 * np.linalg.norm(np.sort(half)[:2]), 1.01 * half.max())
 
 
-def test_bounds_never_clear_a_collision(workcell, rng):
+def test_bounds_never_clear_a_collision(workcell, rng) -> None:
     """Whatever Drake finds colliding, the bounds do not call free, and they call much free."""
     bubbles, arm = bubbles_of(workcell), workcell.arm
     q = rng.uniform(arm.lower, arm.upper, (600, arm.n))
@@ -138,7 +138,7 @@ def test_bounds_never_clear_a_collision(workcell, rng):
     assert cleared.sum() > 0.5 * (~hit).sum()
 
 
-def test_bounds_follow_the_bowl(workcell):
+def test_bounds_follow_the_bowl(workcell) -> None:
     bubbles = bubbles_of(workcell)
     q = np.array(START)[None]
     p_WE = workcell.arm.pose(START)[:3, 3]
@@ -147,7 +147,7 @@ def test_bounds_follow_the_bowl(workcell):
     assert near.min() < 0.0 < far.min()
 
 
-def test_a_free_path_is_free(checker, batch):
+def test_a_free_path_is_free(checker, batch) -> None:
     X_WO = some_places(5)
     plans = plans_of(batch, ABOVE, X_WO)
     found = checker.first_collisions(plans, X_WO)
@@ -157,7 +157,7 @@ def test_a_free_path_is_free(checker, batch):
     assert checker.explain(plans[0], X_WO[0]) is None
 
 
-def test_first_collisions_are_those_of_a_dense_search(checker, batch, workcell):
+def test_first_collisions_are_those_of_a_dense_search(checker, batch, workcell) -> None:
     X_WO = some_places(4)
     plans = plans_of(batch, THROUGH, X_WO)
     found = checker.first_collisions(plans, X_WO)
@@ -177,7 +177,7 @@ def test_first_collisions_are_those_of_a_dense_search(checker, batch, workcell):
         assert workcell.collides(found.q[i : i + 1], X_WO[i]).all()
 
 
-def test_plans_of_any_length_are_checked_each_by_itself(checker, batch):
+def test_plans_of_any_length_are_checked_each_by_itself(checker, batch) -> None:
     X_WO = some_places(4)
     mixed = [
         plans_of(batch, d, X)[0] for d, X in zip([ABOVE, THROUGH] * 2, X_WO[:, None], strict=True)
@@ -191,7 +191,7 @@ def test_plans_of_any_length_are_checked_each_by_itself(checker, batch):
         np.testing.assert_array_equal(alone.q[0], found.q[i])
 
 
-def test_much_of_a_path_is_cleared_without_asking_drake(workcell, batch):
+def test_much_of_a_path_is_cleared_without_asking_drake(workcell, batch) -> None:
     checker, X_WO = PlanChecker(workcell), some_places(6)
     plans = plans_of(batch, ABOVE, X_WO)
     checker.first_collisions(plans, X_WO)
@@ -200,7 +200,7 @@ def test_much_of_a_path_is_cleared_without_asking_drake(workcell, batch):
     assert checker.asked < 0.75 * length / SPACING
 
 
-def test_a_collision_is_explained_by_segment_and_bodies(checker, batch):
+def test_a_collision_is_explained_by_segment_and_bodies(checker, batch) -> None:
     X_WO = placed(AT)
     hit = checker.explain(plans_of(batch, THROUGH, X_WO)[0], X_WO[0])
     assert hit is not None
@@ -216,7 +216,7 @@ def planners(workcell, batch):
     return batch, CollisionFreePlanner(batch, workcell)
 
 
-def test_colliding_successes_become_collisions(planners):
+def test_colliding_successes_become_collisions(planners) -> None:
     batch, planner = planners
     X_WO = some_places(5)
     before = batch.all_outcomes([ABOVE, THROUGH], X_WO, START)
@@ -228,7 +228,7 @@ def test_colliding_successes_become_collisions(planners):
     assert ((after.fraction[:, 1] > 0.0) & (after.fraction[:, 1] < 1.0)).all()
 
 
-def test_outcomes_that_are_checked_stay_as_they_were(planners, monkeypatch):
+def test_outcomes_that_are_checked_stay_as_they_were(planners, monkeypatch) -> None:
     batch, planner = planners
     X_WO = some_places(5)
     given = batch.all_outcomes([ABOVE, THROUGH], X_WO, START)
@@ -242,21 +242,21 @@ def test_outcomes_that_are_checked_stay_as_they_were(planners, monkeypatch):
     assert given.success.all()
 
 
-def test_any_success_goes_on_to_the_next_demonstration(planners):
+def test_any_success_goes_on_to_the_next_demonstration(planners) -> None:
     _, planner = planners
     outcomes = planner.any_success([THROUGH, ABOVE], some_places(5), START)
     assert outcomes.any_success.all()
     assert outcomes.success[:, 1].all()
 
 
-def test_any_success_finds_none_where_all_collide(planners):
+def test_any_success_finds_none_where_all_collide(planners) -> None:
     _, planner = planners
     outcomes = planner.any_success([THROUGH], some_places(3), START)
     assert not outcomes.any_success.any()
     assert (outcomes.cause == Cause.COLLISION).all()
 
 
-def test_failures_within_the_arm_stay_as_they_are(planners):
+def test_failures_within_the_arm_stay_as_they_are(planners) -> None:
     batch, planner = planners
     far = placed(AT + 1.5 * np.eye(3)[0])
     before = batch.all_outcomes([ABOVE], far, START)
@@ -270,7 +270,7 @@ def rng() -> np.random.Generator:
     return np.random.default_rng(7)
 
 
-def test_a_moving_screw_of_the_bowl_moves_the_answer(checker, batch):
+def test_a_moving_screw_of_the_bowl_moves_the_answer(checker, batch) -> None:
     """Turning the bowl about its axis changes nothing; the demonstration turns with it."""
     turned = placed(AT) @ exp(np.array([0.0, 0.0, 0.2, 0.0, 0.0, 0.0]))
     hit = checker.explain(plans_of(batch, THROUGH, turned)[0], turned[0])

@@ -39,7 +39,7 @@ def stated_by(name, mu, rounds=(), collision=False, **options):
     return stated, verdict, " ".join(stated.statement)
 
 
-def test_a_certificate_of_a_run_that_spent_delta():
+def test_a_certificate_of_a_run_that_spent_delta() -> None:
     stated, verdict, text = stated_by("eprocess", [0.0, 0.01, 0.0], [EARLIER, ATTEMPT])
     assert stated.certified
     assert stated.coverage == 0.95
@@ -53,7 +53,7 @@ def test_a_certificate_of_a_run_that_spent_delta():
     assert "budget" not in text
 
 
-def test_whether_collisions_count_is_said():
+def test_whether_collisions_count_is_said() -> None:
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0])
     assert not stated.collisions_checked
     assert "within the joint limits of the robot's model; collisions do not count." in text
@@ -62,7 +62,7 @@ def test_whether_collisions_count_is_said():
     assert "that touches nothing." in text
 
 
-def test_the_papers_reading_is_labelled():
+def test_the_papers_reading_is_labelled() -> None:
     stated, _, text = stated_by("naive_pac", [0.0, 0.01, 0.0], [ATTEMPT])
     assert not stated.delta_spent_over_attempts
     assert stated.delta_of_attempt == 0.05
@@ -74,7 +74,7 @@ def test_the_papers_reading_is_labelled():
     assert "not spent" not in text
 
 
-def test_a_run_without_a_certificate_says_what_it_has_shown():
+def test_a_run_without_a_certificate_says_what_it_has_shown() -> None:
     stated, verdict, text = stated_by("eprocess", [0.0, 0.3, 0.0], [ATTEMPT])
     assert not stated.certified
     shown = coverage_bound(verdict.samples, verdict.failures, 0.05 / 6)
@@ -84,7 +84,7 @@ def test_a_run_without_a_certificate_says_what_it_has_shown():
     assert f"beta' = {shown:.4f}" in text
 
 
-def test_a_run_that_never_began_states_nothing():
+def test_a_run_that_never_began_states_nothing() -> None:
     bandit = make_strategy("eprocess", GOAL)
     setup = SimpleNamespace(
         scenario=SimpleNamespace(

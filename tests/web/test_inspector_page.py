@@ -302,7 +302,9 @@ def with_other_regions(folder: Path) -> None:
     ],
 )
 @pytest.mark.parametrize("verb", ["inspect", "report"])
-def test_a_damaged_directory_gives_one_message(copy, verb, damage, expected, monkeypatch, capsys):
+def test_a_damaged_directory_gives_one_message(
+    copy, verb, damage, expected, monkeypatch, capsys
+) -> None:
     damage(copy)
     before = sorted(copy.rglob("*"))
     options = ["--html", str(copy.parent / "page.html")] if verb == "inspect" else []
