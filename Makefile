@@ -3,8 +3,10 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 WORKERS ?= auto
+MODULE ?=
+SAMPLE ?=
 
-.PHONY: run test install install-test lint types layers unit notebooks clean help
+.PHONY: run test install install-test lint types layers unit notebooks mutate hooks clean help
 
 help:  ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -30,6 +32,10 @@ $(VENV)/.installed-test: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	touch $@ $(VENV)/.installed
 
+$(VENV)/.installed-development: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,development]'
+	touch $@ $(VENV)/.installed $(VENV)/.installed-test
+
 lint: install-test  ## ruff
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -46,6 +52,12 @@ unit: install-test  ## pytest with coverage
 
 notebooks: install-test  ## run the tutorials
 	$(BIN)/pytest --nbmake --nbmake-timeout=300 -n $(WORKERS) tutorials
+
+mutate: $(VENV)/.installed-development  ## mutation testing; MODULE=drake_screw/screws/poses.py, SAMPLE=40 mutants at random
+	nice $(BIN)/python benchmarks/mutation.py $(MODULE) $(if $(SAMPLE),--sample $(SAMPLE))
+
+hooks: $(VENV)/.installed-development  ## run the checks before every commit
+	$(BIN)/pre-commit install
 
 clean:  ## remove everything that was built
 	rm -rf $(VENV) build dist .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -20,7 +20,7 @@ from task import TASKS, Task, load_task
 
 from drake_screw.planning import BatchPlanner, Cause, Outcomes
 from drake_screw.planning.batch import EVALUATIONS_PER_STEP
-from drake_screw.planning.compiled import Kernel, Settings
+from drake_screw.planning.compiled import Settings
 from drake_screw.typing import Array
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
@@ -74,17 +74,9 @@ def converge(task: Task, pairs: int, seed: int) -> Convergence:
 
 def _ends(task: Task, X_WO: Array, which: Array, tolerance: float) -> Array:
     """(pairs, n) joint angles at the end of each success, NaN elsewhere."""
-    chain = task.arm.screw_chain()
-    settings = Settings(tolerance=tolerance)
-    kernel = Kernel(chain.screws, chain.home, chain.lower, chain.upper, settings)
-    answers = kernel.plan(
-        [d.X_OE for d in task.demonstrations],
-        [d.objects for d in task.demonstrations],
-        X_WO,
-        task.q_start,
-        keep_ends=True,
-    )
-    return answers.end[np.arange(len(which)), which]
+    planner = BatchPlanner(task.arm.screw_chain(), tolerance=tolerance)
+    plans = planner.plans(task.demonstrations, X_WO, task.q_start, which)
+    return np.array([plan.q[-1] if plan.success else 0.0 * plan.q[-1] + np.nan for plan in plans])
 
 
 def draw(results: dict[str, Convergence], pairs: int, file: Path) -> None:

@@ -1,18 +1,53 @@
 """Manipulation plans from few demonstrations: screw geometry and bandits on Drake.
 
-The rooms, from the bottom up: `screws`, `robot`, `demonstrations` and `tasks`, `planning` and
-`bandits`, `acquisition` and `visualization`, `scenario`. What most programs begin with is here.
+What is named in `__all__` is stable; ``docs/python.md`` shows how it is used.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from drake_screw.errors import DrakeScrewError
+from drake_screw.errors import (
+    DrakeScrewError,
+    ModelError,
+    RecordingError,
+    RunDirectoryError,
+    ScenarioError,
+)
 
-__all__ = ["DrakeScrewError", "Setup", "load_scenario", "new_run", "open_run"]
+if TYPE_CHECKING:
+    from drake_screw import screws
+    from drake_screw.assembly.setup import Setup
+    from drake_screw.demonstrations import Demonstration
+    from drake_screw.execution import ScrewPlanExecutor
+    from drake_screw.planning import Outcomes
+    from drake_screw.runs.run import new_run, open_run
+    from drake_screw.scenario.loader import load_scenario
 
-_PLACES = {
+    __version__: str
+
+__all__ = [
+    "Demonstration",
+    "DrakeScrewError",
+    "ModelError",
+    "Outcomes",
+    "RecordingError",
+    "RunDirectoryError",
+    "ScenarioError",
+    "ScrewPlanExecutor",
+    "Setup",
+    "__version__",
+    "load_scenario",
+    "new_run",
+    "open_run",
+    "screws",
+]
+
+_MODULES = {
+    "Demonstration": "drake_screw.demonstrations",
+    "Outcomes": "drake_screw.planning",
+    "ScrewPlanExecutor": "drake_screw.execution",
     "Setup": "drake_screw.assembly.setup",
     "load_scenario": "drake_screw.scenario.loader",
     "new_run": "drake_screw.runs.run",
@@ -22,8 +57,14 @@ _PLACES = {
 
 def __getattr__(name: str) -> Any:
     """Import the rest of `__all__` when it is first asked for: Drake takes a second to load."""
-    if name in _PLACES:
-        from importlib import import_module
-
-        return getattr(import_module(_PLACES[name]), name)
+    if name in _MODULES:
+        return getattr(import_module(_MODULES[name]), name)
+    if name == "screws":
+        return import_module("drake_screw.screws")
+    if name == "__version__":
+        return import_module("importlib.metadata").version("drake-screw")
     raise AttributeError(f"module 'drake_screw' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -10,6 +10,8 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
+from drake_screw.typing import PathLike
+
 
 class DrakeScrewError(Exception):
     """Base of the family.
@@ -26,7 +28,7 @@ class DrakeScrewError(Exception):
         message: str,
         *,
         remedy: str | None = None,
-        file: str | Path | None = None,
+        file: PathLike | None = None,
         line: int | None = None,
     ) -> None:
         super().__init__(message)
@@ -58,10 +60,21 @@ class RunDirectoryError(DrakeScrewError):
     """A run directory that cannot be written, read or continued."""
 
 
+class PluginError(DrakeScrewError):
+    """A strategy, motion, teacher or format that is named in text and cannot be found."""
+
+
 def nearest(name: str, valid: Iterable[str]) -> str | None:
     """The valid name most like `name`, or None where none is alike."""
     matches = difflib.get_close_matches(name, list(valid), n=1, cutoff=0.6)
     return matches[0] if matches else None
+
+
+def suggestion(name: str, valid: Iterable[str], plural: str) -> str:
+    """For example ``Did you mean 'beta'? Keys: beta, epsilon``."""
+    valid = list(valid)
+    guess = nearest(name, valid)
+    return (f"Did you mean '{guess}'? " if guess else "") + f"{plural}: {', '.join(valid)}"
 
 
 def unknown(kind: str, name: str, where: str, valid: Iterable[str]) -> tuple[str, str]:

@@ -88,7 +88,7 @@ def _work(work: Callable[[Any, Any], Any], job: Any) -> Any:
 
 @contextmanager
 def _ctrl_c_held() -> Iterator[None]:
-    """Processes started meanwhile never see Ctrl-C: they end when this one tells them to."""
+    """Processes started meanwhile never see Ctrl-C: they end when this one does."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from drake_screw.errors import DrakeScrewError, ModelError, ScenarioError, nearest
+from drake_screw.typing import PathLike
 
 Kind = Literal["models", "scenarios"]
 
@@ -32,7 +33,7 @@ def list_resources(kind: Kind, suffixes: Sequence[str] = ()) -> tuple[str, ...]:
     return tuple(sorted({name.split(".")[0] for name in files if name.endswith(wanted)}))
 
 
-def find_resource(kind: Kind, name_or_path: str | Path, suffixes: Sequence[str]) -> Path:
+def find_resource(kind: Kind, name_or_path: PathLike, suffixes: Sequence[str]) -> Path:
     """The absolute path of a shipped file given by name, or of any file given by path.
 
     What contains a folder or ends in one of `suffixes` is a path, seen from the working

@@ -1,6 +1,5 @@
 """The self-evaluation loop and the teachers."""
 
-from drake_screw.acquisition.evaluation import Evaluator
 from drake_screw.acquisition.events import (
     DemonstrationAdded,
     DemonstrationRequested,
@@ -13,11 +12,12 @@ from drake_screw.acquisition.events import (
     Status,
     Suggestion,
 )
+from drake_screw.acquisition.grid_evaluator import Evaluator
 from drake_screw.acquisition.loop import acquire
-from drake_screw.acquisition.recorded import RecordedTeacher
+from drake_screw.acquisition.recorded_teacher import RecordedTeacher
 from drake_screw.acquisition.suggestion import random_suggestion, suggest
 from drake_screw.acquisition.teacher import Lesson, Teacher
-from drake_screw.acquisition.tree_evaluation import TreeEvaluator
+from drake_screw.acquisition.tree_evaluator import TreeEvaluator
 
 __all__ = [
     "DemonstrationAdded",

@@ -1,4 +1,4 @@
-"""What the acquisition loop tells its listeners, in the order in which it happens."""
+"""What the acquisition loop reports to its listeners, in the order in which it happens."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ class DemonstrationRequested:
 
 @dataclass(frozen=True, eq=False)
 class DemonstrationAdded:
-    """The teacher answered; `remark` says what people should know of the answer."""
+    """The teacher answered; `remark` is a human-readable comment on the answer."""
 
     round: int
     number: int
@@ -130,7 +130,7 @@ class Finished:
 
     Attributes:
         status: CERTIFIED or INSUFFICIENT.
-        reason: why it ended, for people.
+        reason: why it ended, human-readable.
         verdict: of the last round; None if none was evaluated.
         demonstrations: all in hand.
     """

@@ -38,7 +38,7 @@ TRIES = 3
 _TIES, _LESSON, _PLACE = 2**31, 2**31 + 1, 2**31 + 2
 
 
-class _InHand(NamedTuple):
+class _Acquired(NamedTuple):
     recordings: tuple[Recording, ...]
     demonstrations: tuple[Demonstration, ...]
 
@@ -67,22 +67,22 @@ def acquire(
     Yields:
         Events; the last is `Finished`.
     """
-    hand = _InHand((), ())
+    acquired = _Acquired((), ())
     if isinstance(initial, int):
         for number in range(initial):
-            place = random_suggestion(regions, _rng(seed, number, _PLACE))
-            added, remark = yield from _ask(teacher, learn, hand, 0, (place,), seed)
+            place = initial_place(regions, seed, number)
+            added, remark = yield from _ask(teacher, learn, acquired, 0, (place,), seed)
             if added is None:
-                yield _finished(f"no initial demonstration: {remark}", None, hand)
+                yield _finished(f"no initial demonstration: {remark}", None, acquired)
                 return
-            hand = added
+            acquired = added
     else:
         recordings = tuple(initial)
-        hand = _InHand(recordings, tuple(learn(r) for r in recordings))
+        acquired = _Acquired(recordings, tuple(learn(r) for r in recordings))
     attempt = 1
     for round in range(budget + 1):
-        yield RoundStarted(round, hand.demonstrations)
-        evaluation, verdict = evaluate(round, hand.demonstrations, attempt)
+        yield RoundStarted(round, acquired.demonstrations)
+        evaluation, verdict = evaluate(round, acquired.demonstrations, attempt)
         attempt += verdict.attempted
         here = evaluation.partition(regions)
         ties = _rng(seed, round, _TIES)
@@ -93,56 +93,62 @@ def acquire(
         )
         yield RoundFinished(
             round,
-            hand.demonstrations,
+            acquired.demonstrations,
             evaluation,
             verdict,
             places[0] if places else None,
             here,
         )
         if verdict.certified:
-            yield Finished(Status.CERTIFIED, verdict.reason, verdict, hand.demonstrations)
+            yield Finished(Status.CERTIFIED, verdict.reason, verdict, acquired.demonstrations)
             return
-        if len(hand.demonstrations) >= budget:
+        if len(acquired.demonstrations) >= budget:
             reason = f"the budget of {budget} demonstrations is used up"
-            yield _finished(reason, verdict, hand)
+            yield _finished(reason, verdict, acquired)
             return
-        added, remark = yield from _ask(teacher, learn, hand, round + 1, places, seed)
+        added, remark = yield from _ask(teacher, learn, acquired, round + 1, places, seed)
         if added is None:
-            yield _finished(remark, verdict, hand)
+            yield _finished(remark, verdict, acquired)
             return
-        hand = added
+        acquired = added
+
+
+def initial_place(regions: Regions, seed: int, number: int) -> Suggestion:
+    """Where initial demonstration `number`, from 0, is asked for."""
+    return random_suggestion(regions, _rng(seed, number, _PLACE))
 
 
 def _ask(
     teacher: Teacher,
     learn: Callable[[Recording], Demonstration],
-    hand: _InHand,
+    acquired: _Acquired,
     round: int,
     places: Sequence[Suggestion],
     seed: int,
-) -> Generator[Event, None, tuple[_InHand | None, str]]:
-    """Ask the teacher at one place after the other; the generator's value is (in hand, remark)."""
-    number, remark = len(hand.recordings), "there is no failed instance to demonstrate"
+) -> Generator[Event, None, tuple[_Acquired | None, str]]:
+    """Ask the teacher at one place after the other; the generator's value is (acquired, remark)."""
+    number, remark = len(acquired.recordings), "there is no failed instance to demonstrate"
     for i, place in enumerate(places):
         yield DemonstrationRequested(round, number, place)
         lesson = teacher.demonstrate(
-            place, number=number, used=hand.recordings, rng=_rng(seed, number, _LESSON, i)
+            place, number=number, used=acquired.recordings, rng=_rng(seed, number, _LESSON, i)
         )
         remark = lesson.remark
         if lesson.recording is not None:
             demonstration = learn(lesson.recording)
             yield DemonstrationAdded(round, number, lesson.recording, demonstration, remark)
             return (
-                _InHand(
-                    (*hand.recordings, lesson.recording), (*hand.demonstrations, demonstration)
+                _Acquired(
+                    (*acquired.recordings, lesson.recording),
+                    (*acquired.demonstrations, demonstration),
                 ),
                 remark,
             )
     return None, remark
 
 
-def _finished(reason: str, verdict: Verdict | None, hand: _InHand) -> Finished:
-    return Finished(Status.INSUFFICIENT, reason, verdict, hand.demonstrations)
+def _finished(reason: str, verdict: Verdict | None, acquired: _Acquired) -> Finished:
+    return Finished(Status.INSUFFICIENT, reason, verdict, acquired.demonstrations)
 
 
 def _rng(seed: int, *key: int) -> np.random.Generator:

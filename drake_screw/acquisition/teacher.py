@@ -17,7 +17,7 @@ class Lesson:
 
     Attributes:
         recording: None where no demonstration is to be had.
-        remark: what people should know of it: "nearest recording of region 3, 4 cm away", or why
+        remark: human-readable, "nearest recording of region 3, 4 cm away", or why
             there is none.
     """
 

@@ -22,16 +22,19 @@ from drake_screw.demonstrations import (
     SegmentationConfig,
     demonstration_from_recording,
     read_library,
-    read_recording,
 )
 from drake_screw.demonstrations.library import JOINTS
 from drake_screw.errors import ModelError, RecordingError
 from drake_screw.planning import Planner
+from drake_screw.plugins import find
 from drake_screw.robot import Arm, RobotConfig
 from drake_screw.robot.workcell import add_robot
-from drake_screw.scenario.schema import RecordedOnBlock
+from drake_screw.scenario.workcell_blocks import RecordedOnBlock
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
+
+FOLDER = "folder"
+"""The usual format of a recording."""
 
 _T = TypeVar("_T")
 
@@ -80,14 +83,35 @@ class Recorder:
             ) from error
         return cls(arm, own, area, str(block.model), file)
 
-    def read(self, folder: Path) -> Recording:
-        """One recording; see `read_recording` for what is raised."""
-        return self._marked(self._try(lambda *arm: read_recording(folder, *arm, objects=self._k)))
+    def read(self, path: Path, format: str = FOLDER) -> Recording:
+        """One recording, in a format that `plugins.find` knows.
 
-    def library(self, folder: Path) -> tuple[Recording, ...]:
-        """All recordings in a folder; see `read_library` for what is raised."""
-        found = self._try(lambda *arm: read_library(folder, *arm, objects=self._k))
-        return tuple(self._marked(recording) for recording in found)
+        Raises:
+            RecordingError: with file and line, whatever is wrong.
+            PluginError: no such format.
+        """
+        reader = find("recording_formats", format)
+        return self._marked(self._try(lambda *arm: reader(path, *arm, objects=self._k)))
+
+    def library(self, folder: Path, format: str = FOLDER) -> tuple[Recording, ...]:
+        """All recordings in a folder, sorted by name.
+
+        Of a format other than the usual one every file and folder in it is a recording, except
+        those whose name begins with a dot.
+
+        Raises:
+            RecordingError: there is none in it, or one cannot be used.
+            PluginError: no such format.
+        """
+        if format == FOLDER:
+            found = self._try(lambda *arm: read_library(folder, *arm, objects=self._k))
+            return tuple(self._marked(recording) for recording in found)
+        paths = sorted(p for p in folder.glob("*") if not p.name.startswith("."))
+        if not paths:
+            raise RecordingError(
+                "no recordings here", remedy="Give a folder of recordings.", file=folder
+            )
+        return tuple(self.read(path, format) for path in paths)
 
     def seen(self, recording: Recording) -> Array:
         """Where the objects of a recording were, for the arm that is planned for; X_WO (k, 4, 4).

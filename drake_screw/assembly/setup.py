@@ -10,19 +10,19 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from drake_screw.acquisition import Evaluator, RecordedTeacher, Teacher, TreeEvaluator
-from drake_screw.acquisition.evaluation import Progress
-from drake_screw.acquisition.simulated import Motion, SimulatedTeacher
-from drake_screw.assembly.recorder import ForeignRecordings, Recorder
+from drake_screw.acquisition import Evaluator, Teacher, TreeEvaluator
+from drake_screw.acquisition.grid_evaluator import Progress
+from drake_screw.acquisition.simulated import Motion
+from drake_screw.assembly.recorder import Recorder
+from drake_screw.assembly.sanity import check_reach, check_start
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Recording, SegmentationConfig
-from drake_screw.errors import ScenarioError
 from drake_screw.planning import BatchPlanner, Outcomes, Planner
 from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.plugins import find
 from drake_screw.robot import (
     ObjectConfig,
     RobotConfig,
-    ScrewChain,
     TableConfig,
     Workcell,
     build_workcell,
@@ -30,9 +30,6 @@ from drake_screw.robot import (
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, free_axes
 from drake_screw.typing import PathLike
-
-KEEP_OFF = 0.5
-"""m. A hand is never farther than this from the object that it works on."""
 
 
 class Parts(TypedDict, total=False):
@@ -117,17 +114,8 @@ class Setup:
             ScenarioError: the start is outside the limits, or the work area out of reach.
         """
         workcell = build_workcell(self.robot, table=self.table, objects=self.objects)
-        margin = workcell.arm.margin(workcell.start)
-        if (margin <= 0.0).any():
-            i = int(np.argmin(margin))
-            arm = workcell.arm
-            raise ScenarioError(
-                f"robot.start: {arm.joint_names[i]} starts at {workcell.start[i]:.4f} rad, outside "
-                f"its limits {arm.lower[i]:.4f} .. {arm.upper[i]:.4f}",
-                remedy="Start from a configuration that is strictly inside all joint limits.",
-                file=self.scenario.source,
-            )
-        self._check_reach(workcell.arm.screw_chain())
+        check_start(self.scenario, workcell.arm)
+        check_reach(self.scenario, workcell.arm, self.area)
         return workcell
 
     @cached_property
@@ -214,28 +202,24 @@ class Setup:
         Raises:
             ScenarioError: the scenario has an interactive teacher, and none was passed in.
             RecordingError: the library of a recorded one cannot be used.
+            PluginError: the scenario names one that is not to be found.
         """
-        block, make = self.scenario.teacher, self._parts.get("teacher")
+        make = self._parts.get("teacher")
         if make is not None:
             return make(self)
-        if block.kind == "interactive":
-            raise ScenarioError(
-                "teacher.kind: an interactive teacher has to be passed in: it asks on a page",
-                remedy="Run it from the command line, or pass "
-                "teacher=drake_screw.web.teaching_page.interactive_teacher.",
-                file=self.scenario.source,
-            )
-        if block.folder is not None:
-            recordings = self.recorder.library(block.folder)
-            foreign = None
-            if self.recorder.robot is not None:
-                foreign = ForeignRecordings(
-                    self.recorder, self.segmentation, self.planner, self.workcell.start
-                )
-            return RecordedTeacher(recordings, self.regions, foreign)
-        return SimulatedTeacher(
-            self.workcell, self.area, self._parts.get("motion") or str(block.motion)
-        )
+        block = self.scenario.teacher
+        teacher: Teacher = find("teachers", block.kind)(self, **block.options)
+        return teacher
+
+    @property
+    def motion(self) -> Motion:
+        """What a simulated teacher shows.
+
+        Raises:
+            PluginError: the scenario names one that is not to be found.
+        """
+        passed_in = self._parts.get("motion")
+        return passed_in or find("motions", str(self.scenario.teacher.motion))
 
     @cached_property
     def initial(self) -> int | tuple[Recording, ...]:
@@ -243,7 +227,8 @@ class Setup:
         block = self.scenario.demonstrations.initial
         if isinstance(block, int):
             return block
-        return tuple(self.recorder.read(folder) for folder in block)
+        format = self.scenario.teacher.format
+        return tuple(self.recorder.read(folder, format) for folder in block)
 
     @cached_property
     def own_recorder(self) -> Recorder:
@@ -272,7 +257,7 @@ class Setup:
         Raises:
             RecordingError: there is none in it, or one cannot be used.
         """
-        return self.recorder.library(Path(folder))
+        return self.recorder.library(Path(folder), self.scenario.teacher.format)
 
     def evaluate(self, demonstrations: Sequence[Demonstration], instances: ArrayLike) -> Outcomes:
         """Plan every task instance with every demonstration.
@@ -294,7 +279,7 @@ class Setup:
         )
 
     def evaluator(self, progress: Progress | None = None) -> Evaluator | TreeEvaluator:
-        """What carries out the rounds of the scenario; `progress` is told of every batch."""
+        """What carries out the rounds of the scenario; `progress` is called with every batch."""
         start, seed = self.workcell.start, self.scenario.seed
         if self.tree is not None:
             return TreeEvaluator(self.planner, self.area, start, self.tree, seed, progress)
@@ -303,16 +288,3 @@ class Setup:
     def learn(self, recording: Recording) -> Demonstration:
         """Turn a recording into a demonstration, by the kinematics of the arm it was made on."""
         return self.recorder_of(recording.robot).learn(recording, self.segmentation)
-
-    def _check_reach(self, chain: ScrewChain) -> None:
-        for i, item in enumerate(self.area.objects):
-            nearest = np.clip(chain.shoulder[:2], item.lower[:2], item.upper[:2])
-            away = float(np.linalg.norm(np.append(nearest, item.z) - chain.shoulder))
-            if away > chain.reach + KEEP_OFF:
-                raise ScenarioError(
-                    f"objects.{i}: the work area of '{item.name}' is out of reach: its nearest "
-                    f"point is {away:.2f} m from the shoulder, the hand gets {chain.reach:.2f} m",
-                    remedy="Move the work area towards the robot; x, y and z are in metres, "
-                    f"seen from '{self.scenario.robot.base}'.",
-                    file=self.scenario.source,
-                )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from pydrake.multibody.parsing import Parser
@@ -11,10 +10,11 @@ from pydrake.multibody.plant import MultibodyPlant
 from drake_screw.errors import ModelError
 from drake_screw.robot import RobotConfig
 from drake_screw.robot.workcell import add_robot
-from drake_screw.scenario.schema import ModelName, Scenario
+from drake_screw.scenario.schema import Scenario
+from drake_screw.typing import PathLike
 
 
-def swap_model(scenario: Scenario, model: Path) -> Scenario:
+def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     """The scenario on another robot model.
 
     The model must have the arm's joints, the base and the end effector. Other joints that are
@@ -25,7 +25,7 @@ def swap_model(scenario: Scenario, model: Path) -> Scenario:
         ModelError: the model cannot be read or lacks the base, or it is one of the robot that the
             recordings were made on.
     """
-    block = replace(scenario.robot, model=ModelName(str(model.resolve())))
+    block = scenario.robot.model_copy(update={"model": str(Path(model).resolve())})
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
     add_robot(
@@ -41,4 +41,5 @@ def swap_model(scenario: Scenario, model: Path) -> Scenario:
             file=model,
         )
     parked = {name: value for name, value in block.parked.items() if name in names}
-    return replace(scenario, robot=replace(block, parked=parked))
+    robot = block.model_copy(update={"parked": parked})
+    return scenario.model_copy(update={"robot": robot})

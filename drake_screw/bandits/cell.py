@@ -7,6 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
+from drake_screw.typing import Array
+
 
 @dataclass(frozen=True, eq=False)
 class Cell:
@@ -22,12 +24,12 @@ class Cell:
         cleared: shown to fail seldom enough.
     """
 
-    lower: np.ndarray
-    upper: np.ndarray
+    lower: Array
+    upper: Array
     depth: int
     epoch: int
-    points: np.ndarray
-    failed: np.ndarray
+    points: Array
+    failed: Array
     cleared: bool = False
 
     @property
@@ -49,7 +51,7 @@ class Cell:
         """The same cell in the next epoch, without samples."""
         return replace(self, epoch=self.epoch + 1, points=self.points[:0], failed=self.failed[:0])
 
-    def grown(self, points: np.ndarray, failed: np.ndarray) -> Cell:
+    def grown(self, points: Array, failed: Array) -> Cell:
         """With more samples."""
         return replace(
             self,
@@ -65,14 +67,14 @@ class Cell:
         upper[axis] = lower[axis] = middle
         below = self.points[:, axis] < middle
 
-        def child(low: np.ndarray, high: np.ndarray, inside: np.ndarray) -> Cell:
+        def child(low: Array, high: Array, inside: Array) -> Cell:
             points, failed = self.points[inside], self.failed[inside]
             return Cell(low, high, self.depth + 1, self.epoch, points, failed)
 
         return child(self.lower, upper, below), child(lower, self.upper, ~below)
 
 
-def cell_number(lower: np.ndarray, upper: np.ndarray) -> int:
+def cell_number(lower: Array, upper: Array) -> int:
     """The number of a cell in the tree: 1 for the unit box, 2 i and 2 i + 1 for cell i's halves.
 
     Args:

@@ -6,6 +6,7 @@ import numpy as np
 
 from drake_screw.bandits.tally import Tally
 from drake_screw.bandits.verdict import Goal, Verdict
+from drake_screw.typing import Array
 
 
 def certificate(goal: Goal, *, spend: bool) -> str:
@@ -17,7 +18,7 @@ def certificate(goal: Goal, *, spend: bool) -> str:
     )
 
 
-def worst_gap(lower: np.ndarray, upper: np.ndarray, region: int) -> float:
+def worst_gap(lower: Array, upper: Array, region: int) -> float:
     """Bound on max_j mu_j - mu_region, given bounds (K,) that hold at once; 0 or more."""
     return max(0.0, float(np.delete(upper, region).max(initial=0.0) - lower[region]))
 
@@ -29,8 +30,8 @@ def conclude(
     certified: bool,
     region: int,
     reason: str,
-    lower: np.ndarray,
-    upper: np.ndarray,
+    lower: Array,
+    upper: Array,
     level: float,
     coverage: float,
     attempted: bool,

@@ -7,12 +7,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from drake_screw.bandits.boundary import clear_boundary, deciding_size
 from drake_screw.bandits.conclusion import conclude
+from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
 from drake_screw.bandits.mixture import confidence_interval, coverage_bound, ln_e_flag
 from drake_screw.bandits.spending import attempt_delta
 from drake_screw.bandits.tally import FIRST, STEP, Tally
 from drake_screw.bandits.verdict import BanditError, Goal, Pull, Verdict
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ class EProcess:
             spend=self.spend,
         )
 
-    def _rank(self, tally: Tally, flagged: np.ndarray, c: float) -> int:
+    def _rank(self, tally: Tally, flagged: Array, c: float) -> int:
         """The flagged region to ask about, after sampling it against its strongest rivals."""
         lower, upper = confidence_interval(tally.n, tally.s, c)
         spent = 0

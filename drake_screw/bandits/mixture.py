@@ -21,10 +21,12 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 from scipy.special import betainc, betaln, expit, logit
 
+from drake_screw.typing import Array
+
 _SMALLEST = 1e-280  # Below it betainc may have lost digits to underflow.
 
 
-def _ln_hypergeometric(a: np.ndarray, b: np.ndarray, t: np.ndarray) -> np.ndarray:
+def _ln_hypergeometric(a: Array, b: Array, t: Array) -> Array:
     """ln 2F1(a+b, 1; a+1; t), by its series of positive terms; needs t < (a+1) / (a+b)."""
     total = np.ones_like(a)
     term = np.ones_like(a)
@@ -36,7 +38,7 @@ def _ln_hypergeometric(a: np.ndarray, b: np.ndarray, t: np.ndarray) -> np.ndarra
     return np.log(total)
 
 
-def ln_e_clear(n: ArrayLike, s: ArrayLike, t: ArrayLike) -> np.ndarray:
+def ln_e_clear(n: ArrayLike, s: ArrayLike, t: ArrayLike) -> Array:
     """Logarithm of the evidence against "the failure probability is t or more".
 
     ln of the integral of p^(s-1/2) (1-p)^(n-s-1/2) over 0 <= p <= t, over the same integral for
@@ -72,7 +74,7 @@ def ln_e_clear(n: ArrayLike, s: ArrayLike, t: ArrayLike) -> np.ndarray:
     return value
 
 
-def ln_e_flag(n: ArrayLike, s: ArrayLike, t: ArrayLike) -> np.ndarray:
+def ln_e_flag(n: ArrayLike, s: ArrayLike, t: ArrayLike) -> Array:
     """Logarithm of the evidence against "the failure probability is t or less".
 
     As `ln_e_clear`, with the integrals over t <= p <= 1.
@@ -84,11 +86,11 @@ def ln_e_flag(n: ArrayLike, s: ArrayLike, t: ArrayLike) -> np.ndarray:
     return ln_e_clear(samples, samples - np.asarray(s), 1.0 - np.asarray(t, dtype=float))
 
 
-def _p_log_p(p: np.ndarray) -> np.ndarray:
+def _p_log_p(p: Array) -> Array:
     return p * np.log(np.where(p > 0.0, p, 1.0))
 
 
-def _upper_logit(n: np.ndarray, s: np.ndarray, c: float) -> np.ndarray:
+def _upper_logit(n: Array, s: Array, c: float) -> Array:
     """logit of the larger solution p of g(p) = c, inf where there is none; `confidence_interval`.
 
     In terms of x = logit(p), g is convex with an asymptote on the right that lies below it, so
@@ -116,7 +118,7 @@ def _upper_logit(n: np.ndarray, s: np.ndarray, c: float) -> np.ndarray:
     return np.where(some, x, np.inf)
 
 
-def confidence_interval(n: ArrayLike, s: ArrayLike, c: float) -> tuple[np.ndarray, np.ndarray]:
+def confidence_interval(n: ArrayLike, s: ArrayLike, c: float) -> tuple[Array, Array]:
     """Bounds on a failure probability that hold at every n at once, with probability 1 - exp(-c).
 
     The p whose whole (not cut down) mixture has not reached exp(c), that is g(p) < c with

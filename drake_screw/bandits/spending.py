@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from drake_screw.bandits.verdict import BanditError
+from drake_screw.typing import Array
 
 
 def attempt_delta(delta: float, attempt: int, *, spend: bool) -> float:
@@ -25,6 +24,6 @@ def attempt_delta(delta: float, attempt: int, *, spend: bool) -> float:
     return delta / (attempt * (attempt + 1)) if spend else delta
 
 
-def look_delta(delta: float, look: int | np.ndarray) -> float | np.ndarray:
+def look_delta(delta: float, look: int | Array) -> float | Array:
     """The share delta 2^-look of look 1, 2, ... within a round; all shares sum to delta."""
     return delta * 0.5**look

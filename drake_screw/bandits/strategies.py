@@ -2,38 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+import inspect
 from typing import Any
 
-from drake_screw.bandits.clopper_pearson import ClopperPearson
-from drake_screw.bandits.eprocess import EProcess
-from drake_screw.bandits.lucb import Lucb
-from drake_screw.bandits.median_elimination import MedianElimination
-from drake_screw.bandits.naive_pac import NaivePac
-from drake_screw.bandits.successive_elimination import SuccessiveElimination
-from drake_screw.bandits.ucb import Ucb
 from drake_screw.bandits.verdict import BanditError, Goal, Strategy
-from drake_screw.errors import unknown
+from drake_screw.errors import PluginError, unknown
+from drake_screw.plugins import BUILT_IN, find
 
-_CLASSES: dict[str, type] = {
-    strategy.name: strategy
-    for strategy in (
-        EProcess,
-        NaivePac,
-        ClopperPearson,
-        SuccessiveElimination,
-        Lucb,
-        Ucb,
-        MedianElimination,
-    )
-}
-
-STRATEGIES: tuple[str, ...] = tuple(_CLASSES)
-"""Names for `make_strategy`; the first is the default one."""
+STRATEGIES: tuple[str, ...] = tuple(BUILT_IN["strategies"])
+"""Names of the built-in strategies for `make_strategy`; the first is the default one."""
 
 
 def make_strategy(name: str, goal: Goal, **options: Any) -> Strategy:
     """The strategy called `name`, for a goal, with options as in the docstring of its class.
+
+    Args:
+        name: of a built-in or installed strategy, or ``package.module:Class``.
+        goal: what to certify.
+        options: further arguments of the class.
 
     Raises:
         BanditError: no such strategy, or it has no such option.
@@ -52,13 +38,16 @@ def make_strategy(name: str, goal: Goal, **options: Any) -> Strategy:
     >>> verdict.certified, verdict.total_samples
     (True, 1440)
     """
-    if name not in _CLASSES:
-        message, remedy = unknown("bandit", name, "drake_screw", STRATEGIES)
-        raise BanditError(message, remedy=remedy)
-    strategy = _CLASSES[name]
-    valid = [field.name for field in fields(strategy) if field.name != "goal"]
+    try:
+        strategy = find("strategies", name)
+    except PluginError as error:
+        raise BanditError(error.message, remedy=error.remedy) from error
+    signature = inspect.signature(strategy)
+    valid = [option for option in signature.parameters if option != "goal"]
+    takes_any = any(p.kind is p.VAR_KEYWORD for p in signature.parameters.values())
     for option in options:
-        if option not in valid:
+        if option not in valid and not takes_any:
             message, remedy = unknown("option", option, f"bandit '{name}'", valid)
             raise BanditError(message, remedy=remedy)
-    return strategy(goal, **options)
+    made: Strategy = strategy(goal, **options)
+    return made

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
-from drake_screw.bandits.bounds import BoundStrategy
+from drake_screw.bandits.bound_strategy import BoundStrategy
 from drake_screw.bandits.tally import Tally
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)
@@ -25,6 +24,6 @@ class SuccessiveElimination(BoundStrategy):
         "certificate is true and a region asked for is epsilon-worst, however often one looks."
     )
 
-    def choose(self, tally: Tally, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    def choose(self, tally: Tally, lower: Array, upper: Array) -> Array:
         """(K,) mask of the regions that may be the weakest and may fail over 1 - beta."""
         return (upper >= lower.max()) & (upper > self.goal.tau)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from drake_screw.bandits.verdict import BanditError, Pull
+from drake_screw.typing import Array
 
 FIRST = 16  # Samples of every region at the first look.
 STEP = 64  # Samples of a region at a time, where regions are compared with one another.
@@ -30,11 +31,11 @@ class Tally:
         self.looks = 0
 
     @property
-    def estimates(self) -> np.ndarray:
+    def estimates(self) -> Array:
         """(K,) share of failures, 0 where nothing was drawn."""
         return self.s / np.maximum(self.n, 1)
 
-    def draw(self, counts: np.ndarray | int) -> None:
+    def draw(self, counts: Array | int) -> None:
         """Draws counts (K,) more samples, or as many in every region, and looks at the result.
 
         Raises:
@@ -56,7 +57,7 @@ class Tally:
         self.s += failures
         self.looks += 1
 
-    def draw_from(self, regions: np.ndarray, count: int) -> None:
+    def draw_from(self, regions: Array, count: int) -> None:
         """Draws `count` more samples in each of some regions, an index or a mask array."""
         counts = np.zeros_like(self.n)
         counts[regions] = count

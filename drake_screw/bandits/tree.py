@@ -1,10 +1,10 @@
 """Certify or split: a box of any dimension, cut more finely only where something fails.
 
-A grid fine enough to see a small failing pocket has too many regions once several objects may move.
-The tree below is fixed in advance: the unit box, halved along its axes in cyclic order. A cell that
-cannot be cleared as a whole hands its samples down to its two halves. That is valid because which
-cells exist does not depend on the samples, and the samples of one epoch that fall in a cell are
-independent and uniform there, whichever ancestor they were drawn for.
+A grid fine enough to see a small part that fails has too many regions once several objects may
+move. The tree below is fixed in advance: the unit box, halved along its axes in cyclic order. A
+cell that cannot be cleared as a whole hands its samples down to its two halves. That is valid
+because which cells exist does not depend on the samples, and the samples of one epoch that fall in
+a cell are independent and uniform there, whichever ancestor they were drawn for.
 """
 
 from __future__ import annotations
@@ -16,13 +16,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from drake_screw.bandits.boundary import clear_boundary
 from drake_screw.bandits.cell import Cell
+from drake_screw.bandits.decision_boundary import clear_boundary
 from drake_screw.bandits.mixture import confidence_interval, ln_e_flag
 from drake_screw.bandits.tally import FIRST
 from drake_screw.bandits.verdict import BanditError, Goal
+from drake_screw.typing import Array
 
-CellPull = Callable[[np.ndarray, np.ndarray, int], tuple[np.ndarray, np.ndarray]]
+CellPull = Callable[[Array, Array, int], tuple[Array, Array]]
 """Lower and upper corner (d,) of a cell and a count -> fresh points (count, d), drawn uniformly and
 independently in it, and which of them failed, (count,) bool."""
 
@@ -34,8 +35,8 @@ class TreeVerdict:
     Args:
         certified: all of the frontier is cleared.
         cell: where to ask for a demonstration; None when certified.
-        reason: why the round ended, for people.
-        claim: what the verdict states, for people.
+        reason: why the round ended, human-readable.
+        claim: what the verdict states, human-readable.
         frontier: the cells that now make up the box, to be handed to the next round.
         total_samples: samples drawn in this round.
     """
@@ -74,7 +75,7 @@ class CertifyOrSplit:
     guarantee: ClassVar[str] = (
         "With probability 1 - delta in the whole run a certificate is true: every dyadic cell of "
         "at least the smallest volume fails at most max(level, 1 - beta) of the time, the whole "
-        "box at most 1 - beta; a pocket that straddles cells can be missed."
+        "box at most 1 - beta; a failing part that straddles cells can be missed."
     )
 
     goal: Goal
@@ -97,7 +98,7 @@ class CertifyOrSplit:
         return (Cell(np.zeros(d), np.ones(d), 0, 1, *nothing),)
 
     def advance(self, frontier: tuple[Cell, ...]) -> tuple[Cell, ...]:
-        """The frontier after a new demonstration: cleared cells stay so, the others start anew."""
+        """The frontier after a new demonstration: cleared cells stay so, the others start over."""
         return tuple(cell if cell.cleared else cell.renewed() for cell in frontier)
 
     def decide(self, pull: CellPull, frontier: tuple[Cell, ...]) -> TreeVerdict:

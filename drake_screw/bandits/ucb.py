@@ -7,8 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from drake_screw.bandits.bounds import BoundStrategy
+from drake_screw.bandits.bound_strategy import BoundStrategy
 from drake_screw.bandits.tally import Tally
+from drake_screw.typing import Array
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Ucb(BoundStrategy):
         "certificate is true and a region asked for is epsilon-worst, however often one looks."
     )
 
-    def choose(self, tally: Tally, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    def choose(self, tally: Tally, lower: Array, upper: Array) -> Array:
         """The region with the largest estimate + sqrt(2 ln(total samples) / its samples)."""
         bonus = np.sqrt(2.0 * np.log(tally.n.sum()) / tally.n)
         return np.array([np.argmax(tally.estimates + bonus)])

@@ -9,8 +9,9 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from drake_screw.errors import DrakeScrewError
+from drake_screw.typing import Array
 
-Pull = Callable[[np.ndarray], np.ndarray]
+Pull = Callable[[Array], Array]
 """Draws counts (K,) int fresh, independent samples; answers the failures among them, (K,) int."""
 
 
@@ -67,8 +68,8 @@ class Verdict:
     Args:
         certified: every region is shown to fail at most 1 - beta of the time.
         region: the weakest region, also when certified.
-        reason: why the round ended, for people.
-        claim: what the verdict states, with its confidence, for people.
+        reason: why the round ended, human-readable.
+        claim: what the verdict states, with its confidence, human-readable.
         samples: (K,) int, samples drawn in each region.
         failures: (K,) int, failures among them.
         lower: (K,) confidence bounds from below on the failure probability mu_j.
@@ -87,10 +88,10 @@ class Verdict:
     region: int
     reason: str
     claim: str
-    samples: np.ndarray
-    failures: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
+    samples: Array
+    failures: Array
+    lower: Array
+    upper: Array
     level: float
     simultaneous: bool
     gap: float | None
@@ -99,7 +100,7 @@ class Verdict:
     looks: int
 
     @property
-    def estimates(self) -> np.ndarray:
+    def estimates(self) -> Array:
         """(K,) share of failures; NaN where a region has no samples."""
         return np.divide(
             self.failures,

@@ -17,12 +17,10 @@ from drake_screw.acquisition import (
     RegionsEvaluated,
     RoundFinished,
     RoundStarted,
-    Status,
 )
 from drake_screw.bandits import Verdict
-from drake_screw.runs.certificate import certificate, statement
 from drake_screw.runs.narration import describe
-from drake_screw.runs.run import Run
+from drake_screw.runs.summary import RunSummary
 from drake_screw.tasks import Regions
 
 _ROWS = 24
@@ -76,19 +74,17 @@ def show_event(event: Event, regions: Regions, console: Console) -> None:
         console.print(round_table(event.verdict, event.regions))
 
 
-def show_certificate(run: Run, finished: Finished, console: Console) -> None:
+def show_summary(summary: RunSummary, console: Console) -> None:
     """The statement a finished run makes, and where to find the rest."""
-    stated = certificate(run.setup, finished, run.directory.record["rounds"])
-    certified = finished.status is Status.CERTIFIED
     console.print(
         Panel(
-            Text("\n".join(statement(stated, finished.reason))),
-            title="certificate" if certified else "no certificate",
-            border_style="green" if certified else "yellow",
+            Text("\n".join(summary.statement)),
+            title="certificate" if summary.certified else "no certificate",
+            border_style="green" if summary.certified else "yellow",
             title_align="left",
         )
     )
-    console.print(Text(f"run directory: {run.directory.path}"), soft_wrap=True)
+    console.print(Text(f"run directory: {summary.directory}"), soft_wrap=True)
 
 
 def round_table(verdict: Verdict, regions: Regions) -> Table:

@@ -1,55 +1,49 @@
-"""Planning a list of task instances with a folder of recordings."""
+"""``drake-screw evaluate``: a list of instances, planned with a folder of recordings."""
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
+from typing import Annotated
 
-from drake_screw.assembly.setup import Setup
-from drake_screw.errors import RunDirectoryError
-from drake_screw.runs.directory import write_text
-from drake_screw.runs.instance_tables import outcomes_csv, read_instances
-from drake_screw.scenario.schema import Scenario
+import typer
+
+from drake_screw.commands.options import (
+    JsonOption,
+    ModelOption,
+    ScenarioArgument,
+    SetOption,
+    VerboseOption,
+    chosen_scenario,
+)
+from drake_screw.commands.output import Output
+
+EXAMPLE = (
+    "drake-screw evaluate pouring --demonstrations demos --instances places.csv "
+    "--output outcomes.csv"
+)
 
 
-def evaluate(scenario: Scenario, demonstrations: Path, instances: Path, output: Path) -> str:
-    """Write the outcomes of all instances with all demonstrations as a CSV.
+def evaluate(
+    scenario: ScenarioArgument,
+    demonstrations: Annotated[
+        Path, typer.Option(metavar="DIR", help="A folder of recordings.", show_default=False)
+    ],
+    instances: Annotated[
+        Path, typer.Option(metavar="CSV", help="Columns x, y and perhaps yaw; m and rad.")
+    ],
+    output: Annotated[Path, typer.Option(metavar="CSV", help="Where to write the outcomes.")],
+    model: ModelOption = None,
+    set_: SetOption = None,
+    json: JsonOption = None,
+    verbose: VerboseOption = False,
+) -> None:
+    """Plan every listed instance with every demonstration of a folder.
 
-    Args:
-        scenario: gives robot, start configuration, objects and segmentation.
-        demonstrations: folder of recordings, of the robot that the scenario says they are of.
-        instances: CSV to read, see `read_instances`.
-        output: CSV to write, see `outcomes_csv`.
-
-    Returns:
-        A summary for people.
-
-    Raises:
-        DrakeScrewError: anything that cannot be read or written; nothing is written then.
+    The output has a column for each demonstration; its cells are 0:0 for success, s:j failed in
+    screw segment s at the limit of joint j (both counted from 1), s:n unreachable, s:c collision.
     """
-    setup = Setup(scenario)
-    x_y_yaw = read_instances(instances, setup.area)
-    learned = [setup.learn(recording) for recording in setup.recorder.library(demonstrations)]
-    began = time.perf_counter()
-    outcomes = setup.planner.all_outcomes(learned, setup.area.X_WO(x_y_yaw), setup.workcell.start)
-    seconds = time.perf_counter() - began
-    text = outcomes_csv(x_y_yaw, outcomes, [d.name for d in learned], setup.area)
-    try:
-        write_text(output, text)
-    except OSError as error:
-        raise RunDirectoryError(
-            f"cannot be written: {error.strerror}",
-            remedy="Give an --output in a folder that exists and that you may write to.",
-            file=output,
-        ) from error
-    rates = outcomes.success.mean(axis=0)
-    lines = [
-        f"{len(x_y_yaw):,} instances x {len(learned)} demonstrations in {seconds:.1f} s",
-        *(f"  {d.name}: {rate:.1%}" for d, rate in zip(learned, rates, strict=True)),
-        f"solved by at least one: {outcomes.any_success.mean():.2%}",
-        f"written to {output}",
-    ]
-    outside = ~setup.area.contains(x_y_yaw)
-    if outside.any():
-        lines.insert(1, f"note: {outside.sum():,} instances lie outside the work area")
-    return "\n".join(lines)
+    out = Output(json)
+    from drake_screw.runs.outcome_table import tabulate_outcomes
+
+    loaded = chosen_scenario(scenario, set_, model)
+    out.present(tabulate_outcomes(loaded, demonstrations, instances, output))

@@ -1,91 +1,28 @@
-"""Write one plan of a run as a file for the robot."""
+"""``drake-screw export``: a plan as a file for the robot."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
-import numpy as np
+import typer
 
-from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
-from drake_screw.errors import RunDirectoryError, ScenarioError, unknown
-from drake_screw.execution import FORMATS, TimeLimits
-from drake_screw.execution.batch import plan_and_time
-from drake_screw.robot import Arm
-from drake_screw.runs.executions import (
-    collision_free_planner,
-    known_demonstrations,
-    placed,
-    why_not,
-)
-from drake_screw.runs.run import open_run
+from drake_screw.commands.options import RunArgument, VerboseOption
+from drake_screw.commands.output import Output
+
+EXAMPLE = "drake-screw export runs/pouring/TIME --instance 0.9 0.3 --output plan.csv"
 
 
-def export(run: Path, instance: Sequence[float], format: str, output: Path) -> str:
-    """Plan one instance with a run's demonstrations and write the timed plan.
+def export(
+    run: RunArgument,
+    instance: Annotated[
+        tuple[float, float], typer.Option(metavar="X Y", help="Where the object stands, in m.")
+    ],
+    output: Annotated[Path, typer.Option(metavar="FILE", help="Where to write the trajectory.")],
+    format: Annotated[str, typer.Option(help="baxter-csv, ros-trajectory or npz.")] = "baxter-csv",
+    verbose: VerboseOption = False,
+) -> None:
+    """Write a plan as a trajectory that the robot can play."""
+    from drake_screw.runs.trajectory import write_trajectory
 
-    Args:
-        run: its directory.
-        instance: x, y and perhaps yaw of each object.
-        format: one of `drake_screw.execution.FORMATS`.
-        output: file to write; it is replaced.
-
-    Returns:
-        A summary for people.
-
-    Raises:
-        DrakeScrewError: there is no such format or it is of another robot, no plan for the
-            instance, or the file or the run cannot be used; nothing is written then.
-    """
-    if format not in FORMATS:
-        message, remedy = unknown("format", format, "the export", FORMATS)
-        raise ScenarioError(message, remedy=remedy)
-    opened = open_run(run)
-    setup = opened.setup
-    _check_robot(format, setup.workcell.arm)
-    demonstrations = known_demonstrations(opened)
-    x_y_yaw = placed(setup, instance)
-    X_WO = setup.area.X_WO(x_y_yaw)
-    planner = collision_free_planner(setup)
-    outcomes = planner.any_success(demonstrations, X_WO[None], setup.workcell.start)[0]
-    arm = setup.workcell.arm
-    chosen = demonstrations[int(np.argmax(outcomes.success))]
-    timed = None
-    if outcomes.any_success:
-        guides = chosen.transfer(X_WO)
-        timed = plan_and_time(arm, setup.robot.start, guides, TimeLimits())[1]
-    if timed is None:
-        why = why_not(outcomes, demonstrations, X_WO, planner, setup)
-        raise ScenarioError(
-            f"no demonstration of this run gives a plan there: {why}",
-            remedy="Choose another instance, or carry the run on with more demonstrations.",
-        )
-    content = FORMATS[format](timed, arm)
-    temporary = output.with_name(f".{output.name}.part")
-    try:
-        temporary.write_bytes(content)
-        os.replace(temporary, output)
-    except OSError as error:
-        raise RunDirectoryError(
-            f"cannot be written: {error.strerror}",
-            remedy="Give an --output in a folder that exists and that you may write to.",
-            file=output,
-        ) from error
-    lines = [
-        f"planned with {chosen.name}: {len(timed.segments)} screw segments, {timed.duration:.1f} s",
-        f"written to {output}",
-    ]
-    if not setup.area.contains(x_y_yaw):
-        lines.insert(0, "note: the instance lies outside the work area")
-    return "\n".join(lines)
-
-
-def _check_robot(format: str, arm: Arm) -> None:
-    foreign = [name for name in arm.joint_names if name not in BAXTER_COLUMNS]
-    if format == "baxter-csv" and foreign:
-        others = " or ".join(f"--format {name}" for name in FORMATS if name != format)
-        raise ScenarioError(
-            f"the format {format} is for Baxter, which has no joint '{foreign[0]}'",
-            remedy=f"Give {others}.",
-        )
+    Output().present(write_trajectory(run, instance, format, output))

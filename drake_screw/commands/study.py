@@ -1,65 +1,69 @@
-"""A study as seen in a terminal: a bar for each number of regions, then the table."""
+"""``drake-screw study``: how many demonstrations a certificate takes, by number of regions."""
 
 from __future__ import annotations
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
-from rich.text import Text
+from pathlib import Path
+from typing import Annotated
 
-from drake_screw.studies.study import Study
+import typer
+
+from drake_screw.commands.options import (
+    DemonstrationsOption,
+    JsonOption,
+    ModelOption,
+    ScenarioUnlessResumed,
+    SeedOption,
+    SetOption,
+    VerboseOption,
+    WorkersOption,
+    check_resumed_alone,
+    chosen_scenario,
+)
+from drake_screw.commands.output import Output
+
+EXAMPLE = "drake-screw study pouring --regions 1,4,16 --runs 200"
 
 
-def show_study(
-    study: Study, console: Console, *, workers: int | None = None, quiet: bool = False
+def study(
+    scenario: ScenarioUnlessResumed = None,
+    regions: Annotated[
+        str, typer.Option(metavar="K,K,...", help="Numbers of regions to compare.")
+    ] = "1,2,4,8,16",
+    runs: Annotated[int, typer.Option(help="Runs for each number of regions.", min=1)] = 1000,
+    demonstrations: DemonstrationsOption = None,
+    model: ModelOption = None,
+    seed: SeedOption = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="The study directory. Default: studies/SCENARIO/TIME."),
+    ] = None,
+    resume: Annotated[
+        Path | None, typer.Option(metavar="STUDY", help="Carry an interrupted study on.")
+    ] = None,
+    workers: WorkersOption = None,
+    set_: SetOption = None,
+    json: JsonOption = None,
+    verbose: VerboseOption = False,
 ) -> None:
-    """Carry a study out, showing how far it is, and tell what it found.
+    """Measure how many demonstrations a certificate takes.
 
-    Args:
-        study: new or opened.
-        console: to write to; live bars only where it is a terminal.
-        workers: processes; as many as processors if None.
-        quiet: nothing but the result.
+    For several numbers of regions; every run has fresh samples and a random first demonstration.
     """
-    live = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[mean]}"),
-        TimeRemainingColumn(),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    )
-    total = dict.fromkeys(study.regions, 0)
-    with live:
-        bars = {K: live.add_task(f"K = {K}", total=study.runs, mean="") for K in study.regions}
-        for run in study.finished_runs():
-            total[run.K] += run.demonstrations
-            live.advance(bars[run.K])
-        for run in study.carry_out(workers):
-            total[run.K] += run.demonstrations
-            live.advance(bars[run.K])
-            done = live.tasks[bars[run.K]].completed
-            live.update(bars[run.K], mean=f"{total[run.K] / done:.2f} demonstrations")
-    console.print(summary_table(study))
-    console.print(Text(f"study directory: {study.path}"), soft_wrap=True)
+    if resume is not None:
+        check_resumed_alone("study", scenario, demonstrations, model, seed, output, set_)
+    out = Output(json)
+    from drake_screw.commands.study_console import show_study
+    from drake_screw.studies.study import new_study, numbers_of_regions, open_study
 
-
-def summary_table(study: Study) -> Table:
-    """A line for each K: runs, certified, and how many demonstrations those needed."""
-    table = Table(title="demonstrations until the certificate", box=None, padding=(0, 1, 0, 0))
-    for name in ("K", "runs", "certified", "mean", "at most"):
-        table.add_column(name, justify="right")
-    table.add_column("distribution", no_wrap=False)
-    for K, found in study.summary().items():
-        shares = (f"{n}: {count / found.runs:.1%}" for n, count in found.counts.items())
-        table.add_row(
-            str(K),
-            f"{found.runs:,}",
-            f"{len(found.numbers):,}",
-            f"{found.mean:.2f}",
-            str(found.most),
-            ", ".join(shares),
-        )
-    return table
+    if resume is None:
+        numbers = numbers_of_regions(regions)
+        loaded = chosen_scenario(scenario, set_, model, seed=seed, demonstrations=demonstrations)
+        job = new_study(loaded, numbers, runs, output)
+    else:
+        job = open_study(resume)
+    try:
+        found = show_study(job, out.console, workers=workers)
+    except KeyboardInterrupt:
+        out.say(f"interrupted; carry on with: drake-screw study --resume {job.path}")
+        raise typer.Exit(130) from None
+    out.write(found)

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 
 from drake_screw.errors import RecordingError, nearest
-from drake_screw.typing import Array
+from drake_screw.typing import Array, PathLike
 
 _ARM = ("s0", "s1", "e0", "e1", "w0", "w1", "w2", "gripper")
 COLUMNS = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in _ARM)
 
 
-def read_csv(file: Path, joint_names: Sequence[str]) -> tuple[Array, Array, Array]:
+def read_csv(file: PathLike, joint_names: Sequence[str]) -> tuple[Array, Array, Array]:
     """Read the columns of some joints.
 
     Args:
@@ -28,8 +29,8 @@ def read_csv(file: Path, joint_names: Sequence[str]) -> tuple[Array, Array, Arra
         RecordingError: the file is missing or empty, lacks a column, or has a row that is not
             numbers.
     """
-    lines = read_lines(file, "A recording is a folder with this file in it.")
-    header = [name.strip() for name in lines[0].split(",")] if lines else []
+    table = read_rows(file, "A recording is a folder with this file in it.")
+    header = [name.strip() for name in table[0][1]] if table else []
     wanted = ["time", *joint_names]
     for name in wanted:
         if name not in header:
@@ -39,14 +40,11 @@ def read_csv(file: Path, joint_names: Sequence[str]) -> tuple[Array, Array, Arra
                 remedy=(f"Did you mean '{guess}'? " if guess else "")
                 + f"Columns found: {', '.join(header) or 'none'}",
                 file=file,
-                line=1,
+                line=table[0][0] if table else 1,
             )
     columns = [header.index(name) for name in wanted]
     rows, where = [], []
-    for number, line in enumerate(lines[1:], start=2):
-        if not line.strip():
-            continue
-        cells = line.split(",")
+    for number, cells in table[1:]:
         if len(cells) != len(header):
             raise RecordingError(
                 f"{len(cells)} cells where the header has {len(header)}",
@@ -61,20 +59,29 @@ def read_csv(file: Path, joint_names: Sequence[str]) -> tuple[Array, Array, Arra
                 f"not a number: {error.args[0].split(': ')[-1]}", file=file, line=number
             ) from error
         where.append(number)
-    table = np.array(rows, dtype=float).reshape(len(rows), len(wanted))
-    return table[:, 0], table[:, 1:], np.array(where, dtype=int)
+    values = np.array(rows, dtype=float).reshape(len(rows), len(wanted))
+    return values[:, 0], values[:, 1:], np.array(where, dtype=int)
 
 
-def read_lines(file: Path, remedy: str) -> list[str]:
-    """The lines of a text file.
+def read_rows(file: PathLike, remedy: str) -> list[tuple[int, list[str]]]:
+    """The rows of a CSV file that are not blank, each with the number of its line.
 
     Raises:
-        RecordingError: the file is missing, for which there is a remedy, or is not text.
+        RecordingError: the file is missing, for which there is a remedy, or is not CSV.
     """
     try:
-        return file.read_text(encoding="utf-8-sig").splitlines()
+        with open(file, encoding="utf-8-sig", newline="") as stream:
+            rows = csv.reader(stream, skipinitialspace=True, strict=True)
+            return [(rows.line_num, row) for row in rows if row[1:] or any(map(str.strip, row))]
     except FileNotFoundError as error:
         raise RecordingError("no such file", file=file, remedy=remedy) from error
+    except csv.Error as error:
+        raise RecordingError(
+            f"not CSV: {error}",
+            remedy="Check the quotation marks on this line.",
+            file=file,
+            line=rows.line_num,
+        ) from error
     except (OSError, UnicodeDecodeError) as error:
         raise RecordingError(f"cannot be read: {error}", file=file) from error
 
@@ -101,8 +108,9 @@ def csv_text(
     for i, name in enumerate(columns):
         default = 100.0 if name.endswith("gripper") else 0.0
         table[:, i] = q[:, names.index(name)] if name in names else held.get(name, default)
-    rows = [
-        f"{time:.6f}," + ",".join(f"{value:.12g}" for value in row)
-        for time, row in zip(t, table.tolist(), strict=True)
-    ]
-    return "\n".join([",".join(["time", *columns]), *rows]) + "\n"
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time", *columns])
+    for time, row in zip(t, table.tolist(), strict=True):
+        writer.writerow([f"{time:.6f}", *(f"{value:.12g}" for value in row)])
+    return text.getvalue()

@@ -22,7 +22,7 @@ class Demonstration:
         X_OE: (g, 4, 4) guiding poses, each in its object's frame.
         objects: (g,) index of that object.
         X_WO: (k, 4, 4) where the objects were.
-        path: (m, 4, 4) X_WE, the hand as recorded.
+        path: (m, 4, 4) X_WE, the end effector as recorded.
         kept: (g,) indices of the guiding poses in `path`.
     """
 

@@ -7,17 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-from drake_screw.demonstrations.baxter_csv import csv_text, read_csv, read_lines
+from drake_screw.demonstrations.baxter_csv import csv_text, read_csv, read_rows
 from drake_screw.demonstrations.recording import Recording, checked
 from drake_screw.errors import RecordingError
 from drake_screw.screws import normalized
-from drake_screw.typing import Array
+from drake_screw.typing import Array, PathLike
 
 JOINTS, OBJECTS, REGION = "joint_angles.csv", "object_poses.csv", "region_of_interest.txt"
 
 
 def read_recording(
-    folder: str | Path,
+    folder: PathLike,
     joint_names: Sequence[str],
     lower: Array,
     upper: Array,
@@ -56,7 +56,7 @@ def read_recording(
 
 
 def read_library(
-    folder: str | Path,
+    folder: PathLike,
     joint_names: Sequence[str],
     lower: Array,
     upper: Array,
@@ -98,7 +98,7 @@ def read_library(
 
 
 def write_recording(
-    recording: Recording, folder: str | Path, held: Mapping[str, float] | None = None
+    recording: Recording, folder: PathLike, held: Mapping[str, float] | None = None
 ) -> None:
     """Write a recording as the robot's recorder does; `read_recording` reads it back.
 
@@ -110,28 +110,22 @@ def write_recording(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / JOINTS).write_text(csv_text(recording.t, recording.q, recording.joint_names, held))
-    matrices = recording.X_WO.reshape(-1, 4)
-    (folder / OBJECTS).write_text(
-        "".join(",".join(f"{v:.17g}" for v in row) + "\n" for row in matrices.tolist())
-    )
+    np.savetxt(folder / OBJECTS, recording.X_WO.reshape(-1, 4), fmt="%.17g", delimiter=",")
     if recording.region_of_interest is not None:
         (folder / REGION).write_text(f"{recording.region_of_interest:g}\n")
 
 
-def read_object_poses(file: Path) -> Array:
+def read_object_poses(file: PathLike) -> Array:
     """Poses X_WO (k, 4, 4) from a CSV of stacked 4x4 matrices.
 
     Raises:
         RecordingError: the file is missing or is not a stack of poses.
     """
     remedy = "Write the pose X_WO of each object, a 4x4 matrix, comma-separated."
-    lines = read_lines(file, remedy)
     rows: list[list[float]] = []
-    for number, line in enumerate(lines, start=1):
-        if not line.strip():
-            continue
+    for number, cells in read_rows(file, remedy):
         try:
-            row = [float(cell) for cell in line.split(",")]
+            row = [float(cell) for cell in cells]
         except ValueError as error:
             raise RecordingError("not numbers", file=file, line=number) from error
         complete = len(row) == 4 and bool(np.isfinite(row).all())

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.errors import RecordingError
-from drake_screw.typing import Array
+from drake_screw.typing import Array, PathLike
 
 CLAMPED_WITHIN = 1e-3  # rad; encoders read this far beyond a limit when the arm rests against it
 GAP = 0.5  # s
@@ -27,9 +27,9 @@ class Recording:
         t: (m,) s, increasing from 0.
         q: (m, n) rad or m.
         X_WO: (k, 4, 4) poses of the k objects.
-        region_of_interest: factor on the smallest hand-object distance, if the recording has its
-            own.
-        notes: what the importer changed, for people.
+        region_of_interest: factor on the smallest distance of E to an object, if the recording
+            has its own.
+        notes: what the importer changed, human-readable.
         source: folder it was read from.
         robot: model of the robot it was made on; None for the arm that is planned for.
     """
@@ -55,13 +55,13 @@ def checked(
     lower: Array,
     upper: Array,
     *,
-    file: Path | None = None,
+    file: PathLike | None = None,
     lines: Array | None = None,
 ) -> Recording:
     """The recording made fit for use, or an error that says where it is not.
 
     Time is rebased to 0, samples with the stamp of the one before are dropped, angles within 1 mrad
-    beyond a limit are clamped, and of a still head and tail one sample is kept; `notes` tells what
+    beyond a limit are clamped, and of a still head and tail one sample is kept; `notes` says what
     was done.
 
     Args:
@@ -112,7 +112,7 @@ def checked(
         raise fail(
             row + 1,
             f"{t[row + 1] - t[row]:.2f} s are missing, in which the arm moved",
-            "Record again: what the hand did in the gap cannot be known.",
+            "Record again: what the arm did in the gap cannot be known.",
         )
     left, stays = np.abs(q - q[0]).max(axis=1) > STILL, np.abs(q - q[-1]).max(axis=1) <= STILL
     first = int(np.argmax(left)) - 1

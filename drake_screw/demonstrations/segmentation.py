@@ -1,4 +1,4 @@
-"""From a recorded hand path to guiding poses: the constant screws it is made of.
+"""From a recorded end-effector path to guiding poses: the constant screws it is made of.
 
 The method is Mahalingam and Chakraborty's (ICRA 2023): a path is cut where a constant screw no
 longer fits it, and only what happens near an object is kept.
@@ -29,11 +29,11 @@ class SegmentationConfig:
     """Tolerances of segmentation.
 
     Attributes:
-        spacing: m, hand poses nearer than this to the one kept before are dropped.
+        spacing: m, poses nearer than this to the one kept before are dropped.
         position_tolerance: m, allowed distance of the path from its screw.
         rotation_tolerance: allowed distance of unit quaternions, |a - b|, from the screw.
         min_progress: least change of the screw parameter from one pose to the next.
-        region_of_interest: times the smallest hand-object distance is near the object.
+        region_of_interest: times the smallest distance of E to the object is near it.
 
     >>> from dataclasses import replace
     >>> replace(SegmentationConfig(), region_of_interest=2.0).spacing
@@ -106,7 +106,7 @@ def segment(X_WE: Array, config: SegmentationConfig) -> Array:
     next start. The first and the last pose are among them.
 
     A pose every 5 mm, 0.2 m along x and then 0.2 m along y: two screws, cut one pose behind the
-    corner. A quarter of a circle on which the hand turns along: one screw.
+    corner. A quarter of a circle on which the end effector turns along: one screw.
 
     >>> from drake_screw.screws import exp, pose_from_planar
     >>> corner = [(0.005 * min(i, 40), 0.005 * max(i - 40, 0), 0) for i in range(81)]
@@ -132,14 +132,15 @@ def segment(X_WE: Array, config: SegmentationConfig) -> Array:
 def guiding_poses(
     X_WE: Array, X_WO: Array, config: SegmentationConfig
 ) -> tuple[Array, Array, Array]:
-    """Guiding poses of a recorded hand path, each in the frame of the object it belongs to.
+    """Guiding poses of a recorded end-effector path, each in the frame of the object it belongs to.
 
     An object's region of interest is the first unbroken run of segment ends within
-    `config.region_of_interest` times the smallest hand-object distance among them. A pose in the
-    regions of several objects belongs to the one it is nearest to, in proportion to that distance.
+    `config.region_of_interest` times the smallest distance of E to the object among them. A pose in
+    the regions of several objects belongs to the one it is nearest to, in proportion to that
+    distance.
 
     Args:
-        X_WE: (m, 4, 4) hand poses over time.
+        X_WE: (m, 4, 4) end-effector poses over time.
         X_WO: (k, 4, 4) object poses.
 
     Returns:

@@ -1,10 +1,9 @@
 """Executing plans: time laws, the executor, simulation in Drake, and export."""
 
-from drake_screw.execution.checks import Tolerances
 from drake_screw.execution.executor import Control, ScrewPlanExecutor
-from drake_screw.execution.export import FORMATS
 from drake_screw.execution.joint_path import JointPathSource
-from drake_screw.execution.recording import recording_html
+from drake_screw.execution.monitoring import Tolerances
+from drake_screw.execution.playback import recording_html
 from drake_screw.execution.report import Contact, Deviation, ExecutionReport
 from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
@@ -12,7 +11,6 @@ from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan, TimeLimits, time_plan
 
 __all__ = [
-    "FORMATS",
     "Contact",
     "Control",
     "Deviation",

@@ -13,7 +13,7 @@ from pydrake.multibody.inverse_kinematics import (
 )
 from pydrake.systems.framework import BasicVector, Context, EventStatus, LeafSystem, State
 
-from drake_screw.execution.checks import (
+from drake_screw.execution.monitoring import (
     Tolerances,
     arrival,
     beginning,

@@ -6,7 +6,7 @@ import numpy as np
 from pydrake.common.value import Value
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
-from drake_screw.execution.checks import Tolerances, arrival
+from drake_screw.execution.monitoring import Tolerances, arrival
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.robot import Arm

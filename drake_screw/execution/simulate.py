@@ -10,7 +10,7 @@ from pydrake.common.value import Value
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context, EventStatus
 
-from drake_screw.execution.checks import failed
+from drake_screw.execution.monitoring import failed
 from drake_screw.execution.report import Contact, ExecutionReport, make_report
 from drake_screw.execution.station import Station
 from drake_screw.execution.timing import TimedPlan

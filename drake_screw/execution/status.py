@@ -22,7 +22,7 @@ class ExecutionStatus:
     Attributes:
         phase: idle, running, done or failed.
         segment: the current screw segment, from 0; where it failed; None if there is none.
-        reason: why it failed, for people; empty otherwise.
+        reason: why it failed, in words; empty otherwise.
     """
 
     phase: Phase = Phase.IDLE

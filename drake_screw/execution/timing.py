@@ -31,7 +31,9 @@ UNLIMITED = 1e3
 
 FINE = 1e-3  # s, between points at which a time law is checked
 EVERY = 4  # of them one is kept
-GRID = 120  # points along a segment at which Toppra keeps the limits
+GRIDS = (120, 127, 139, 151, 163)
+"""Points along a segment at which Toppra keeps the limits. Now and then its arithmetic fails at one
+of them, on a path that has a time law: then the next number is tried."""
 RESERVE = 0.99  # part of the limits that Toppra may use
 STILL = 1e-6  # rad, joint motion of a segment that does not move
 
@@ -125,11 +127,6 @@ class TimedPlan:
     def __deepcopy__(self, _: object) -> TimedPlan:
         return self
 
-    @property
-    def begins(self) -> Array:
-        """(g + 1,) s, when each segment begins, and when the last one ends."""
-        return np.concatenate([[0.0], np.cumsum([piece.duration for piece in self.segments])])
-
     @cached_property
     def duration(self) -> float:
         """Length in s."""
@@ -192,18 +189,6 @@ def time_plan(
     return TimedPlan(tuple(pieces))
 
 
-def largest_ratios(
-    plan: TimedPlan, velocity: ArrayLike, acceleration: ArrayLike, *, every: float = 1e-3
-) -> tuple[float, float]:
-    """The largest velocity and acceleration of a timed plan, over their limits (n,) or ().
-
-    Accelerations are difference quotients of the velocity over `every` seconds.
-    """
-    _, _, v = plan.sampled(every)
-    a = np.diff(v[:-1], axis=0) / every
-    return float((np.abs(v) / velocity).max()), float((np.abs(a) / acceleration).max())
-
-
 def _timed(
     X_WA: Array, X_WB: Array, s: Array, q: Array, arm: Arm, limits: TimeLimits
 ) -> TimedSegment:
@@ -264,14 +249,14 @@ def _spline(s: Array, q: Array) -> PiecewisePolynomial:
 def _fastest(
     path: PiecewisePolynomial, velocity: Array, acceleration: Array
 ) -> PiecewisePolynomial:
-    grid = np.linspace(0.0, 1.0, GRID)
-    toppra = Toppra(path, _joints(len(velocity)), grid)
-    toppra.AddJointVelocityLimit(-velocity, velocity)
-    toppra.AddJointAccelerationLimit(-acceleration, acceleration)
-    law = toppra.SolvePathParameterization()
-    if law is None:
-        raise RuntimeError("Toppra found no time law for a path that starts and ends at rest")
-    return law
+    for count in GRIDS:
+        toppra = Toppra(path, _joints(len(velocity)), np.linspace(0.0, 1.0, count))
+        toppra.AddJointVelocityLimit(-velocity, velocity)
+        toppra.AddJointAccelerationLimit(-acceleration, acceleration)
+        law = toppra.SolvePathParameterization()
+        if law is not None:
+            return law
+    raise RuntimeError("Toppra found no time law for a path that starts and ends at rest")
 
 
 @lru_cache

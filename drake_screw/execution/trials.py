@@ -1,15 +1,15 @@
-"""Trials: instances that were to be executed, and what came of them, as a table and in words."""
+"""Trials: instances that were to be executed, and what came of them, as a table and in sum."""
 
 from __future__ import annotations
 
 import csv
 import io
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from drake_screw.execution.report import ExecutionReport
+from drake_screw.execution.report import Deviation, ExecutionReport
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.status import Phase
 from drake_screw.tasks import AXES, WorkArea
@@ -83,48 +83,136 @@ _MEASURES: dict[str, Callable[[ExecutionReport], str]] = {
 }
 
 
-def summary(trials: Sequence[Trial]) -> str:
-    """What trials show, for people."""
+@dataclass(frozen=True)
+class Remark:
+    """What is to be said of a trial: its region, where its objects are (m, m, rad), the words."""
+
+    region: int
+    x_y_yaw: tuple[tuple[float, float, float], ...]
+    text: str
+
+    def __str__(self) -> str:
+        where = ", ".join(f"x {x:.3f} y {y:.3f}" for x, y, _ in self.x_y_yaw)
+        return f"region {self.region}, {where}: {self.text}"
+
+
+@dataclass(frozen=True)
+class Measures:
+    """The worst of some executions.
+
+    Attributes:
+        joint_margin: rad, the least; negative outside the limits.
+        velocity: greatest joint velocity, over its limit.
+        tracking, screws, final: greatest of each kind, see `ExecutionReport`.
+        time: s, least, greatest and mean.
+    """
+
+    joint_margin: float
+    velocity: float
+    tracking: Deviation
+    screws: Deviation
+    final: Deviation
+    time: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class TrialSummary:
+    """What trials show.
+
+    Attributes:
+        instances: how many there were to execute.
+        executed: how many have a plan, which was simulated.
+        done: how many of those ended as planned.
+        outside_limits, over_velocity, with_contact: how many had such a flaw.
+        worst: of all that were executed; None if none was.
+        without_plan: why there is none.
+        flawed: what went wrong.
+    """
+
+    instances: int
+    executed: int
+    done: int
+    outside_limits: int
+    over_velocity: int
+    with_contact: int
+    worst: Measures | None
+    without_plan: tuple[Remark, ...]
+    flawed: tuple[Remark, ...]
+
+    def __str__(self) -> str:
+        lines = [f"{self.instances} instances, {self.executed} executed"]
+        lines += [f"  {remark}" for remark in self.without_plan]
+        if self.worst is not None:
+            least, most, mean = self.worst.time
+            lines += [
+                f"done                       {self.done} of {self.executed}",
+                f"outside joint limits       {self.outside_limits}",
+                f"over a velocity limit      {self.over_velocity}",
+                f"with contact               {self.with_contact}",
+                f"least joint margin         {self.worst.joint_margin:.4f} rad",
+                f"greatest joint velocity    {self.worst.velocity:.0%} of its limit",
+                f"hand from its set point    {_at_most(self.worst.tracking)}",
+                f"hand from its screw        {_at_most(self.worst.screws)}",
+                f"hand from the last pose    {_at_most(self.worst.final)}",
+                f"time                       {least:.1f} to {most:.1f}, mean {mean:.1f} s",
+            ]
+        return "\n".join([*lines, *(f"  {remark}" for remark in self.flawed)])
+
+
+def summarize(trials: Sequence[Trial]) -> TrialSummary:
+    """Count and name what trials show."""
     reports = [trial.report for trial in trials if trial.report is not None]
-    lines = [f"{len(trials)} instances, {len(reports)} executed"]
-    lines += [
-        f"  region {trial.region}, {_where(trial)}: no plan: {trial.reason}"
+    without = tuple(
+        _remark(trial, f"no plan: {trial.reason}") for trial in trials if trial.execution is None
+    )
+    flawed = tuple(
+        _remark(trial, _flaws(trial.report))
         for trial in trials
-        if trial.execution is None
-    ]
-    if not reports:
-        return "\n".join(lines)
-    done = sum(report.status.phase is Phase.DONE for report in reports)
-    lines += [
-        f"done                       {done} of {len(reports)}",
-        f"outside joint limits       {sum(bool(r.outside) for r in reports)}",
-        f"over a velocity limit      {sum(r.velocity > 1.0 for r in reports)}",
-        f"with contact               {sum(bool(r.contacts) for r in reports)}",
-        f"least joint margin         {min(r.worst_margin for r in reports):.4f} rad",
-        f"greatest joint velocity    {max(r.velocity for r in reports):.0%} of its limit",
-        "hand from its set point    " + _worst([r.tracking for r in reports]),
-        "hand from its screw        " + _worst([d for r in reports for d in r.screws]),
-        "hand from the last pose    " + _worst([r.final for r in reports]),
-        f"time                       {_span([r.time for r in reports])} s",
-    ]
-    for trial in trials:
-        report = trial.report
-        if report is not None and not report.flawless:
-            found = [str(report.status), *map(str, report.contacts)]
-            found += [f"{name} leaves its limits" for name in report.outside]
-            lines.append(f"  region {trial.region}, {_where(trial)}: {'; '.join(found)}")
-    return "\n".join(lines)
+        if trial.report is not None and not trial.report.flawless
+    )
+    return TrialSummary(
+        instances=len(trials),
+        executed=len(reports),
+        done=sum(report.status.phase is Phase.DONE for report in reports),
+        outside_limits=sum(bool(report.outside) for report in reports),
+        over_velocity=sum(report.velocity > 1.0 for report in reports),
+        with_contact=sum(bool(report.contacts) for report in reports),
+        worst=_measures(reports) if reports else None,
+        without_plan=without,
+        flawed=flawed,
+    )
 
 
-def _worst(deviations: Sequence) -> str:
-    position = max(d.position for d in deviations)
-    rotation = max(d.rotation for d in deviations)
-    return f"at most {1e3 * position:.2f} mm, {1e3 * rotation:.2f} mrad"
+def _remark(trial: Trial, text: str) -> Remark:
+    places = tuple((float(x), float(y), float(yaw)) for x, y, yaw in trial.x_y_yaw)
+    return Remark(trial.region, places, text)
 
 
-def _span(values: Sequence[float]) -> str:
-    return f"{min(values):.1f} to {max(values):.1f}, mean {np.mean(values):.1f}"
+def _flaws(report: ExecutionReport) -> str:
+    found = [str(report.status), *map(str, report.contacts)]
+    return "; ".join([*found, *(f"{name} leaves its limits" for name in report.outside)])
 
 
-def _where(trial: Trial) -> str:
-    return ", ".join(f"x {x:.3f} y {y:.3f}" for x, y, _ in trial.x_y_yaw)
+def _measures(reports: Sequence[ExecutionReport]) -> Measures:
+    times = [report.time for report in reports]
+    return Measures(
+        joint_margin=min(report.worst_margin for report in reports),
+        velocity=max(report.velocity for report in reports),
+        tracking=_greatest([report.tracking for report in reports]),
+        screws=_greatest([screw for report in reports for screw in report.screws]),
+        final=_greatest([report.final for report in reports]),
+        time=(min(times), max(times), float(np.mean(times))),
+    )
+
+
+def _greatest(deviations: Sequence[Deviation]) -> Deviation:
+    return Deviation(
+        **{
+            field.name: max((getattr(d, field.name) for d in deviations), default=0.0)
+            for field in fields(Deviation)
+        }
+    )
+
+
+def _at_most(deviation: Deviation) -> str:
+    return f"at most {1e3 * deviation.position:.2f} mm, {1e3 * deviation.rotation:.2f} mrad"

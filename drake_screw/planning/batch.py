@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning.compiled import Kernel, Order, Settings
-from drake_screw.planning.outcomes import Cause, Outcomes
+from drake_screw.planning.compiled import Answers, Kernel, Order, Settings
+from drake_screw.planning.outcomes import Cause, Outcomes, Plan
+from drake_screw.planning.paths import joint_paths
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import translation_distance
 from drake_screw.typing import Array
@@ -85,6 +86,58 @@ class BatchPlanner:
 
         return self._plan(demonstrations, X_WO, q_start, nearest_first, True)
 
+    def plans(
+        self,
+        demonstrations: Sequence[Demonstration],
+        X_WO: ArrayLike,
+        q_start: ArrayLike,
+        which: ArrayLike,
+    ) -> tuple[Plan, ...]:
+        """The plans behind outcomes: the joint paths that were followed to find them.
+
+        Args:
+            demonstrations, X_WO, q_start: as for `all_outcomes`.
+            which: (N,) indices of the demonstration that each instance is planned with.
+
+        Returns:
+            N plans, each up to where it failed if it did. Their outcomes are those of
+            `all_outcomes`, to the last bit.
+
+        Raises:
+            ValueError: as for `all_outcomes`; or an index is not that of a demonstration.
+        """
+        X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
+        which = np.asarray(which, dtype=np.int64)
+        self._check(demonstrations, X_WO, q_start)
+        N, D = len(X_WO), len(demonstrations)
+        if which.shape != (N,) or ((which < 0) | (which >= D)).any():
+            raise ValueError(f"which must be {N} indices from 0 to {D - 1}, it is {which}")
+        if len(X_WO) == 0:
+            return ()
+        failed = self._failed_start(q_start, (len(X_WO),))
+        if failed is not None:
+            stay = np.zeros(1, dtype=np.int64), np.zeros(1)
+            return tuple(Plan(q_start[None], *stay, failed[i]) for i in range(len(X_WO)))
+        self._warn_of_compiling(len(X_WO))
+        traced = self._kernel.trace(
+            [d.X_OE for d in demonstrations],
+            [d.objects for d in demonstrations],
+            X_WO,
+            q_start,
+            which,
+            threads=self.threads,
+        )
+        limits = np.stack([self.chain.lower, self.chain.upper])
+        return tuple(
+            plan
+            for answers in traced
+            for plan in joint_paths(_outcomes(answers)[:, 0], answers.trace, q_start, limits)
+        )
+
+    def plan(self, demonstration: Demonstration, X_WO: ArrayLike, q_start: ArrayLike) -> Plan:
+        """The plan of one instance X_WO (k, 4, 4) with one demonstration; see `plans`."""
+        return self.plans([demonstration], np.asarray(X_WO)[None], q_start, [0])[0]
+
     def _plan(
         self,
         demonstrations: Sequence[Demonstration],
@@ -95,17 +148,10 @@ class BatchPlanner:
     ) -> Outcomes:
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         self._check(demonstrations, X_WO, q_start)
-        margin = np.minimum(q_start - self.chain.lower, self.chain.upper - q_start)
-        if (margin <= 0.0).any():
-            shape, joint = (len(X_WO), len(demonstrations)), int(np.argmin(margin))
-            return Outcomes(
-                np.full(shape, Cause.JOINT_LIMIT, dtype=np.uint8),
-                np.zeros(shape, dtype=np.int16),
-                np.full(shape, joint, dtype=np.int8),
-                np.zeros(shape, dtype=np.float32),
-            )
-        if not self.compiled and len(X_WO) * len(demonstrations) > 0:
-            _LOG.info("compiling the planner for this arm, once; this takes a few seconds")
+        failed = self._failed_start(q_start, (len(X_WO), len(demonstrations)))
+        if failed is not None:
+            return failed
+        self._warn_of_compiling(len(X_WO) * len(demonstrations))
         answers = self._kernel.plan(
             [d.X_OE for d in demonstrations],
             [d.objects for d in demonstrations],
@@ -116,7 +162,23 @@ class BatchPlanner:
             threads=self.threads,
         )
         self.evaluations += EVALUATIONS_PER_STEP * int(answers.steps.sum())
-        return Outcomes(answers.cause, answers.segment, answers.joint, answers.fraction)
+        return _outcomes(answers)
+
+    def _failed_start(self, q_start: Array, shape: tuple[int, ...]) -> Outcomes | None:
+        """Outcomes of a start that is not inside the limits."""
+        margin = np.minimum(q_start - self.chain.lower, self.chain.upper - q_start)
+        if (margin > 0.0).all():
+            return None
+        return Outcomes(
+            np.full(shape, Cause.JOINT_LIMIT, dtype=np.uint8),
+            np.zeros(shape, dtype=np.int16),
+            np.full(shape, int(np.argmin(margin)), dtype=np.int8),
+            np.zeros(shape, dtype=np.float32),
+        )
+
+    def _warn_of_compiling(self, plans: int) -> None:
+        if not self.compiled and plans > 0:
+            _LOG.info("compiling the planner for this arm, once; this takes a few seconds")
 
     def _check(self, demonstrations: Sequence[Demonstration], X_WO: Array, q_start: Array) -> None:
         if q_start.shape != (self.chain.n,) or not np.isfinite(q_start).all():
@@ -134,3 +196,7 @@ class BatchPlanner:
                 )
             if not np.isfinite(d.X_OE).all():
                 raise ValueError(f"demonstration '{d.name}' has guiding poses that are not finite")
+
+
+def _outcomes(answers: Answers) -> Outcomes:
+    return Outcomes(answers.cause, answers.segment, answers.joint, answers.fraction)

@@ -16,8 +16,7 @@ import numpy as np
 from pydrake.geometry import Box, Capsule, Cylinder, Ellipsoid, Role, Shape, Sphere
 from pydrake.multibody.tree import BodyIndex
 
-from drake_screw.planning.paths import Frames
-from drake_screw.robot import Workcell
+from drake_screw.robot import ScrewChain, Workcell
 from drake_screw.screws import inverse
 from drake_screw.typing import Array
 
@@ -33,7 +32,7 @@ class Bubbles:
     """Spheres around an arm, boxes around the rest.
 
     Attributes:
-        frames: of the arm.
+        chain: the arm.
         centers: (S, 3) p_WS of the spheres at q = 0, m.
         radii: (S,) m.
         joint: (S,) the last joint before the sphere's body, from 0.
@@ -44,7 +43,7 @@ class Bubbles:
         pairs: (P, 2) spheres that could collide with one another.
     """
 
-    frames: Frames
+    chain: ScrewChain
     centers: Array
     radii: Array
     joint: Array
@@ -65,7 +64,7 @@ class Bubbles:
             distance (m, S) of each sphere to all that it could touch, at most, in m, and the
             spheres' centres p_WS (m, S, 3).
         """
-        E = self.frames(q)[self.joint]
+        E = self.chain.motions(q)[self.joint]
         p = (E[..., :3, :3] @ self.centers[:, None, :, None])[..., 0] + E[..., :3, 3]
         p = np.ascontiguousarray(np.moveaxis(p, 0, 1))
         distance = np.empty(p.shape[:2])
@@ -123,7 +122,6 @@ def bubbles_of(workcell: Workcell) -> Bubbles:
     could touch them is never cleared by these bounds.
     """
     plant, arm, checker = workcell.plant, workcell.arm, workcell.checker
-    frames = Frames(arm.screw_chain())
     inspector = workcell.scene_graph.model_inspector()
     context = plant.CreateDefaultContext()
     plant.SetPositions(context, arm.full_positions(np.zeros(arm.n)))
@@ -175,7 +173,7 @@ def bubbles_of(workcell: Workcell) -> Bubbles:
         if joint[i] < joint[j] and (sphere_body[i], sphere_body[j]) not in strangers
     ]
     return Bubbles(
-        frames,
+        arm.screw_chain(),
         p_WS,
         np.array(radii),
         np.array(joint, dtype=int),
@@ -255,8 +253,8 @@ def _never_meet(
     ]
     q = np.tile((arm.lower + arm.upper) / 2.0, (int(np.prod([len(x) for x in axes])), 1))
     q[:, between] = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(len(q), -1)
-    frames = Frames(arm.screw_chain())
-    E, J = frames(q)[last[b]], frames.jacobian(q)[:, :, between]
+    chain = arm.screw_chain()
+    E, J = chain.motions(q)[last[b]], chain.jacobian(q)[:, :, between]
     p = np.einsum("mij,cj->mci", E[:, :3, :3], p_WS) + E[:, None, :3, 3]
     w, v = J[:, None, :3], J[:, None, 3:]
     speed = np.linalg.norm(np.cross(w, p[..., None], axis=2) + v, axis=2) + REACH

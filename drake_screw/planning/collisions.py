@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning.batch import BatchPlanner
 from drake_screw.planning.clearance import bubbles_of
-from drake_screw.planning.outcomes import Cause, Outcomes
-from drake_screw.planning.paths import Paths, joint_paths
+from drake_screw.planning.outcomes import Cause, Outcomes, Plan, concatenate
 from drake_screw.robot import Workcell
 from drake_screw.typing import Array
 
@@ -20,9 +19,11 @@ SPACING = 0.01
 """m, at most, that the arm moves between two configurations that Drake is asked about."""
 
 SLACK = 2e-3
-"""m, by which a part of the arm may stray from the straight line between two points of a path."""
+"""m, by which the way of a part of the arm between two points of a plan may be longer than the
+straight line."""
 
 CHUNK = 8192  # configurations whose bounds are computed together
+PLANS = 1024  # that are checked together
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,72 +72,74 @@ class PlanChecker:
         self.bubbles = bubbles_of(workcell)
         self.asked = 0
 
-    def first_collisions(self, paths: Paths, X_WO: ArrayLike) -> Collisions:
-        """Check paths.
+    def first_collisions(self, plans: Sequence[Plan], X_WO: ArrayLike) -> Collisions:
+        """Check plans.
 
         Args:
-            paths: of N plans.
+            plans: N of the batch planner's.
             X_WO: (N, k, 4, 4) the objects of each.
         """
-        N, _, n = paths.q.shape
-        X_WO = np.asarray(X_WO, dtype=float)
-        uncertain, travel = self._bounds(paths.q, X_WO)
-        path, step = np.nonzero(uncertain)
-        parts = np.maximum(np.ceil(travel[path, step] / SPACING).astype(int), 1)
-        which = np.repeat(np.arange(len(path)), parts)
-        part = 1 + np.arange(len(which)) - np.repeat(np.cumsum(parts) - parts, parts)
-        share = part / parts[which]
-        path, step = path[which], step[which]
-        before, after = paths.q[path, step], paths.q[path, step + 1]
-        q = before + share[:, None] * (after - before)
-        hit = self.workcell.collides(q, X_WO[path]) if len(q) else np.zeros(0, dtype=bool)
-        self.asked += len(q)
-        found, first = np.unique(path[hit], return_index=True)
-        at = np.flatnonzero(hit)[first]
-        where, into = step[at], share[at]
-        began = np.where(paths.segment[where] == paths.segment[where + 1], paths.s[where], 0.0)
+        N, X_WO = len(plans), np.asarray(X_WO, dtype=float)
+        n = self.workcell.arm.n
         result = Collisions(
-            np.zeros(N, dtype=bool),
-            np.full(N, -1),
-            np.ones(N),
-            np.full((N, n), np.nan),
+            np.zeros(N, dtype=bool), np.full(N, -1), np.ones(N), np.full((N, n), np.nan)
         )
+        if N == 0:
+            return result
+        q = np.concatenate([plan.q for plan in plans])
+        segment = np.concatenate([plan.segment for plan in plans])
+        s = np.concatenate([plan.s for plan in plans])
+        owner = np.repeat(np.arange(N), [len(plan.q) for plan in plans])
+        uncertain, travel = self._bounds(q, X_WO, owner)
+        step = np.flatnonzero(uncertain)
+        parts = np.maximum(np.ceil(travel[step] / SPACING).astype(int), 1)
+        part = 1 + np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+        step, share = np.repeat(step, parts), part / np.repeat(parts, parts)
+        asked = q[step] + share[:, None] * (q[step + 1] - q[step])
+        hit = np.flatnonzero(self._collide(asked, X_WO[owner[step]]))
+        found, first = np.unique(owner[step[hit]], return_index=True)
+        at = hit[first]
+        where, into = step[at], share[at]
+        began = np.where(segment[where] == segment[where + 1], s[where], 0.0)
         result.collides[found] = True
-        result.segment[found] = paths.segment[where + 1]
-        result.fraction[found] = began + into * (paths.s[where + 1] - began)
-        result.q[found] = q[at]
+        result.segment[found] = segment[where + 1]
+        result.fraction[found] = began + into * (s[where + 1] - began)
+        result.q[found] = asked[at]
         return result
 
-    def explain(
-        self, demonstration: Demonstration, X_WO: ArrayLike, q_start: ArrayLike
-    ) -> Hit | None:
-        """The first collision of the plan for one instance X_WO (k, 4, 4), if there is one."""
-        one = np.asarray(X_WO, dtype=float)[None]
-        found = self.first_collisions(
-            joint_paths(self.bubbles.frames, demonstration, one, q_start), one
-        )
+    def explain(self, plan: Plan, X_WO: ArrayLike) -> Hit | None:
+        """The first collision of a plan among objects X_WO (k, 4, 4), if there is one."""
+        X_WO = np.asarray(X_WO, dtype=float)
+        found = self.first_collisions([plan], X_WO[None])
         if not found.collides[0]:
             return None
-        bodies = self.workcell.colliding_bodies(found.q[0], one[0])
+        bodies = self.workcell.colliding_bodies(found.q[0], X_WO)
         return Hit(int(found.segment[0]), float(found.fraction[0]), bodies)
 
-    def _bounds(self, q: Array, X_WO: Array) -> tuple[Array, Array]:
-        """Which steps (N, m - 1) of paths (N, m, n) are not surely free, and their travel in m."""
-        N, m, _ = q.shape
-        uncertain, travel = np.zeros((N, m - 1), dtype=bool), np.zeros((N, m - 1))
-        several = max(1, CHUNK // m)
-        for first in range(0, N, several):
-            some = slice(first, first + several)
-            count = len(q[some])
-            distance, p = self.bubbles(
-                q[some].reshape(count * m, -1), np.repeat(X_WO[some], m, axis=0)
-            )
-            distance, p = distance.reshape(count, m, -1), p.reshape(count, m, -1, 3)
-            moved = np.linalg.norm(np.diff(p, axis=1), axis=-1) + SLACK
-            free = distance[:, 1:] + distance[:, :-1] > moved
-            uncertain[some] = ~free.all(axis=-1)
-            travel[some] = moved.max(axis=-1, initial=0.0)
-        return uncertain, travel
+    def _collide(self, q: Array, X_WO: Array) -> Array:
+        self.asked += len(q)
+        return self.workcell.collides(q, X_WO) if len(q) else np.zeros(0, dtype=bool)
+
+    def _bounds(self, q: Array, X_WO: Array, owner: Array) -> tuple[Array, Array]:
+        """Which of the steps between successive points are not surely free, and their travel in m.
+
+        Args:
+            q: (M, n) points of plans, one plan after the other.
+            X_WO: (N, k, 4, 4) the objects of each plan.
+            owner: (M,) the plan of each point.
+
+        Returns:
+            (M - 1,) bool, False between two plans; (M - 1,) m.
+        """
+        uncertain, travel = np.zeros(len(q) - 1, dtype=bool), np.zeros(len(q) - 1)
+        for first in range(0, len(q) - 1, CHUNK):
+            steps, points = slice(first, first + CHUNK), slice(first, first + CHUNK + 1)
+            distance, p = self.bubbles(q[points], X_WO[owner[points]])
+            moved = np.linalg.norm(np.diff(p, axis=0), axis=-1) + SLACK
+            free = distance[1:] + distance[:-1] > moved
+            uncertain[steps] = ~free.all(axis=-1)
+            travel[steps] = moved.max(axis=-1, initial=0.0)
+        return uncertain & (owner[1:] == owner[:-1]), travel
 
 
 class CollisionFreePlanner:
@@ -175,11 +178,9 @@ class CollisionFreePlanner:
         first = self.planner.any_success(demonstrations, X_WO, q_start)
         outcomes = self._checked(first, demonstrations, X_WO, q_start)
         again = np.flatnonzero((outcomes.cause == Cause.COLLISION).any(axis=-1))
-        if len(again):
-            every = self.all_outcomes(demonstrations, X_WO[again], q_start)
-            for kept, found in zip(_arrays(outcomes), _arrays(every), strict=True):
-                kept[again] = found
-        return outcomes
+        if len(again) == 0:
+            return outcomes
+        return outcomes.replaced(again, self.all_outcomes(demonstrations, X_WO[again], q_start))
 
     def _checked(
         self,
@@ -188,18 +189,27 @@ class CollisionFreePlanner:
         X_WO: Array,
         q_start: ArrayLike,
     ) -> Outcomes:
-        for i, demonstration in enumerate(demonstrations):
-            rows = np.flatnonzero(outcomes.success[:, i])
-            if len(rows) == 0:
-                continue
-            paths = joint_paths(self.checker.bubbles.frames, demonstration, X_WO[rows], q_start)
-            found = self.checker.first_collisions(paths, X_WO[rows])
-            hit = rows[found.collides]
-            outcomes.cause[hit, i] = Cause.COLLISION
-            outcomes.segment[hit, i] = found.segment[found.collides]
-            outcomes.fraction[hit, i] = found.fraction[found.collides]
-        return outcomes
+        """Outcomes (N, D) with COLLISION in place of those successes that touch something."""
+        instance, which = np.nonzero(outcomes.success)
+        parts = [
+            self._of_plans(demonstrations, X_WO[instance[some]], q_start, which[some])
+            for some in np.split(np.arange(len(instance)), range(PLANS, len(instance), PLANS))
+        ]
+        return outcomes.replaced((instance, which), concatenate(parts))
 
-
-def _arrays(outcomes: Outcomes) -> tuple[Array, ...]:
-    return outcomes.cause, outcomes.segment, outcomes.joint, outcomes.fraction
+    def _of_plans(
+        self,
+        demonstrations: Sequence[Demonstration],
+        X_WO: Array,
+        q_start: ArrayLike,
+        which: NDArray[np.int64],
+    ) -> Outcomes:
+        """(N,) outcomes of plans that keep the limits, N instances with one demonstration each."""
+        plans = self.planner.plans(demonstrations, X_WO, q_start, which)
+        found = self.checker.first_collisions(plans, X_WO)
+        return Outcomes(
+            np.where(found.collides, Cause.COLLISION, Cause.SUCCESS).astype(np.uint8),
+            found.segment.astype(np.int16),
+            np.full(len(plans), -1, dtype=np.int8),
+            found.fraction.astype(np.float32),
+        )

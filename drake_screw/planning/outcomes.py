@@ -55,14 +55,57 @@ class Outcomes:
         return np.asarray(self.success.any(axis=-1))
 
     @property
+    def best_attempt(self) -> NDArray[np.int64]:
+        """(N,) of outcomes (N, D): the demonstration that came furthest; -1 if none was tried.
+
+        That is one that succeeds; else the one that failed in the latest segment, and of several
+        the one that did most of it. The first in order wins a tie.
+        """
+        progress = self.segment + 0.5 * self.fraction.astype(float)
+        progress = np.where(self.success, np.inf, progress)
+        progress = np.where(self.cause == Cause.NOT_TRIED, -np.inf, progress)
+        if self.shape[-1] == 0:
+            return np.full(self.shape[:-1], -1)
+        return np.where(np.isneginf(progress.max(axis=-1)), -1, progress.argmax(axis=-1))
+
+    @property
+    def best(self) -> Outcomes:
+        """(N,) of outcomes (N, D): what became of `best_attempt`; NOT_TRIED if there was none."""
+        best, none = self.best_attempt[..., None], one_outcome(Cause.NOT_TRIED, fraction=0.0)
+
+        def picked(values: NDArray[Any], otherwise: NDArray[Any]) -> NDArray[Any]:
+            last = np.broadcast_to(otherwise, (*self.shape[:-1], 1))
+            return np.take_along_axis(np.concatenate([values, last], axis=-1), best, axis=-1)[
+                ..., 0
+            ]
+
+        return Outcomes(
+            picked(self.cause, none.cause),
+            picked(self.segment, none.segment),
+            picked(self.joint, none.joint),
+            picked(self.fraction, none.fraction),
+        )
+
+    @property
     def furthest_segment(self) -> NDArray[np.int64]:
         """(N,) of outcomes (N, D): the segment in which the best attempt failed, from 0.
 
-        For an instance that succeeds it is the largest int16, later than any failure.
+        For an instance that succeeds it is the largest int16, later than any failure; -1 if
+        nothing was tried.
         """
-        tried = np.where(self.cause == Cause.NOT_TRIED, -1, self.segment.astype(np.int64))
-        tried = np.where(self.success, np.iinfo(np.int16).max, tried)
-        return tried.max(axis=-1, initial=-1)
+        best = self.best
+        return np.where(best.success, np.iinfo(np.int16).max, best.segment.astype(np.int64))
+
+    def replaced(self, where: Any, values: Outcomes) -> Outcomes:
+        """A copy that has other outcomes at an index."""
+        changed = Outcomes(
+            self.cause.copy(), self.segment.copy(), self.joint.copy(), self.fraction.copy()
+        )
+        changed.cause[where] = values.cause
+        changed.segment[where] = values.segment
+        changed.joint[where] = values.joint
+        changed.fraction[where] = values.fraction
+        return changed
 
     def __getitem__(self, index: Any) -> Outcomes:
         return Outcomes(

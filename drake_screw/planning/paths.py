@@ -1,143 +1,70 @@
-"""Joint paths of many plans at once, where the batch planner answers outcomes only.
+"""Joint paths between the steps of the batch planner: the plans that it decided on.
 
-Each path solves the reference planner's equation, dq/ds = J(q)^+ V along a constant screw, by the
-classical Runge-Kutta method. All instances of one demonstration take their steps together, as many
-in a segment as the largest motion among them asks for; every step aims anew at the guiding pose.
+A step of Dormand and Prince's pair is continued to a polynomial of fourth order between its ends
+(Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, section II.6).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from drake_screw.demonstrations import Demonstration
-from drake_screw.planning.contract import POSITION_TOLERANCE, hand_motion
-from drake_screw.robot import ScrewChain
-from drake_screw.screws import inverse, log, shift, translation_distance
-from drake_screw.screws.rotations import cross, skew
+from drake_screw.planning.compiled import Trace
+from drake_screw.planning.outcomes import Cause, Outcomes, Plan
 from drake_screw.typing import Array
 
-STEP = 0.08
-"""Hand motion in one step, rad and (divided by CHARACTERISTIC_LENGTH) m together."""
+SPACING = 0.1
+"""rad (or m), joint motion, summed up over the joints, between two points of a path at most."""
 
-REFINEMENT = 8
-"""Into how many parts a step is divided where a path missed its guiding poses."""
-
-
-@dataclass(frozen=True, eq=False)
-class Paths:
-    """Joint paths of N plans with one demonstration, m points each.
-
-    Attributes:
-        q: (N, m, n) rad or m, from the start configuration to the last guiding pose.
-        segment: (m,) the segment each point lies in, from 0.
-        s: (m,) how far along that segment, 0 to 1.
-    """
-
-    q: Array
-    segment: NDArray[np.int64]
-    s: Array
-
-
-class Frames:
-    """Where an arm's links are for many configurations: a product of exponentials, batched.
-
-    For a unit twist exp(S q) is a polynomial in the matrix S with coefficients that depend on q
-    only (Modern Robotics, eq. 3.51 and 3.88), so all joints take one matrix product.
-    """
-
-    def __init__(self, chain: ScrewChain) -> None:
-        self.chain = chain
-        S = np.zeros((chain.n, 4, 4))
-        S[:, :3, :3], S[:, :3, 3] = skew(chain.screws[:, :3]), chain.screws[:, 3:]
-        powers = np.stack([np.broadcast_to(np.eye(4), S.shape), S, S @ S, S @ S @ S], axis=1)
-        self._powers = powers.reshape(chain.n, 4, 16)
-
-    def __call__(self, q: ArrayLike) -> Array:
-        """exp(S_1 q_1) ... exp(S_i q_i) for every i; (N, n) to (n, N, 4, 4)."""
-        angle = np.asarray(q, dtype=float).T
-        one = np.ones_like(angle)
-        c = np.stack([one, angle, 1.0 - np.cos(angle), angle - np.sin(angle)], axis=-1)
-        E = (c @ self._powers).reshape(*angle.shape, 4, 4)
-        for i in range(1, len(E)):
-            E[i] = E[i - 1] @ E[i]
-        return E
-
-    def pose(self, q: ArrayLike) -> Array:
-        """X_WE; (N, n) to (N, 4, 4)."""
-        return np.asarray(self(q)[-1] @ self.chain.home)
-
-    def jacobian(self, q: ArrayLike) -> Array:
-        """Spatial Jacobian about W's origin; (N, n) to (N, 6, n)."""
-        E = self(q)
-        before = np.concatenate([np.broadcast_to(np.eye(4), E[:1].shape), E[:-1]])
-        R, p = before[..., :3, :3], before[..., :3, 3]
-        w = (R @ self.chain.screws[:, None, :3, None])[..., 0]
-        v = (R @ self.chain.screws[:, None, 3:, None])[..., 0] + cross(p, w)
-        return np.moveaxis(np.concatenate([w, v], axis=-1), 0, -1)
+FEWEST = 4
+"""Parts of a step at least; the points between them tell its polynomial."""
 
 
 def joint_paths(
-    frames: Frames, demonstration: Demonstration, X_WO: ArrayLike, q_start: ArrayLike
-) -> Paths:
-    """Joint paths of instances that a demonstration solves.
+    outcomes: Outcomes, trace: Trace, q_start: Array, limits: Array
+) -> tuple[Plan, ...]:
+    """Sample the paths of plans.
 
-    Limits are not looked at: that these plans succeed is known. Where a path passes a near-singular
-    pose and misses a guiding pose by more than plans may, it is computed again in smaller steps.
+    A path ends where its plan does, at a joint limit exactly on it. Between its points it is cut to
+    the limits, of which the polynomial knows less than the planner.
 
     Args:
-        frames: of the arm.
-        demonstration: to plan with.
-        X_WO: (N, k, 4, 4) object poses of the instances.
-        q_start: (n,) rad or m.
+        outcomes: (N,) of the plans.
+        trace: of their steps.
+        q_start: (n,) rad or m, where all start.
+        limits: (2, n) lower and upper joint limits.
     """
-    guides = demonstration.transfer(X_WO)
-    q, segment, s, missed = _follow(frames, guides, np.asarray(q_start, dtype=float), 1)
-    if missed.any():
-        steps = np.bincount(segment[1:], minlength=guides.shape[1])
-        q[missed] = _follow(frames, guides[missed], q[0, 0], REFINEMENT, steps)[0]
-    return Paths(q, segment, s)
+    parts = _parts(trace)
+    step = np.repeat(np.arange(len(parts)), parts)
+    number = 1 + np.arange(len(step)) - np.repeat(np.cumsum(parts) - parts, parts)
+    u = trace.part[step] * number / parts[step]
+    q = np.clip(dense_output(trace.q[step], u), *limits)
+    s = trace.s[step, 0] + u * (trace.s[step, 1] - trace.s[step, 0])
+    first = np.concatenate([[0], np.cumsum(parts)])[trace.first]
+    plans = []
+    for i, outcome in enumerate(outcomes[j] for j in range(len(trace.steps))):
+        own = slice(first[i], first[i + 1])
+        path = np.concatenate([q_start[None], q[own]])
+        if outcome.cause == Cause.JOINT_LIMIT:
+            joint = int(outcome.joint)
+            nearer = np.abs(limits[:, joint] - path[-1, joint]).argmin()
+            path[-1, joint] = limits[nearer, joint]
+        segment = np.concatenate([[0], trace.segment[step[own]]])
+        plans.append(Plan(path, segment, np.concatenate([[0.0], s[own]]), outcome))
+    return tuple(plans)
 
 
-def _follow(
-    frames: Frames, guides: Array, q_start: Array, parts: int, counts: Array | None = None
-) -> tuple[Array, NDArray[np.int64], Array, Array]:
-    """Paths through guiding poses (N, g, 4, 4), each step in so many parts; and which missed."""
-    q = np.tile(q_start, (len(guides), 1))
-    points, segments, fractions = [q], [0], [0.0]
-    missed = np.zeros(len(guides), dtype=bool)
-    for segment in range(guides.shape[1]):
-        X_WG = guides[:, segment]
-        steps = _steps(X_WG, frames.pose(q)) if counts is None else int(counts[segment])
-        left = steps * parts
-        for step in range(steps):
-            for _ in range(parts):
-                V = log(X_WG @ inverse(frames.pose(q))) / left
-                q, left = _runge_kutta(frames, q, V), left - 1
-            points.append(q)
-            segments.append(segment)
-            fractions.append((step + 1) / steps)
-        missed |= ~(translation_distance(frames.pose(q), X_WG) <= POSITION_TOLERANCE)
-    return np.stack(points, axis=1), np.array(segments), np.array(fractions), missed
+def dense_output(q: Array, u: Array) -> Array:
+    """Joint positions (m, n) in steps (m, 5, n) of a trace, at fractions u (m,) of them."""
+    q0, q1, d0, d1, bend = np.moveaxis(q, 1, 0)
+    u = u[:, None]
+    v = 1.0 - u
+    return q0 + u * (q1 - q0) + u * v * (v * (d0 - q1 + q0) + u * (q1 - q0 - d1) + u * v * bend)
 
 
-def _steps(X_WG: Array, X_WE: Array) -> int:
-    size = hand_motion(shift(log(X_WG @ inverse(X_WE)), X_WE[:, :3, 3]))
-    return max(2, int(np.ceil(size.max(initial=0.0) / STEP)))
-
-
-def _runge_kutta(frames: Frames, q: Array, V: Array) -> Array:
-    k1 = _rates(frames, q, V)
-    k2 = _rates(frames, q + k1 / 2, V)
-    k3 = _rates(frames, q + k2 / 2, V)
-    k4 = _rates(frames, q + k3, V)
-    return q + (k1 + 2 * k2 + 2 * k3 + k4) / 6
-
-
-def _rates(frames: Frames, q: Array, V: Array) -> Array:
-    """J^+ V for twists V (N, 6) about W's origin: the least joint rates."""
-    J = frames.jacobian(q)
-    Jt = np.swapaxes(J, -1, -2)
-    return np.asarray((Jt @ np.linalg.solve(J @ Jt, V[..., None]))[..., 0])
+def _parts(trace: Trace) -> Array:
+    """Into how many parts each step is divided; none if nothing of it is used."""
+    q0, q1, d0, d1, _ = np.moveaxis(trace.q, 1, 0)
+    motion = np.max([np.abs(q1 - q0), np.abs(d0), np.abs(d1)], axis=0).sum(axis=-1)
+    fewest = np.where(trace.s[:, 0] < trace.s[:, 1], FEWEST, 1)
+    parts = np.maximum(np.ceil(trace.part * motion / SPACING), fewest)
+    return np.where(trace.part > 0.0, parts, 0.0).astype(np.int64)

@@ -3,7 +3,7 @@
 It defines the question that the batch planner answers quickly. Along one constant-screw segment
 the hand's spatial twist is constant, so the joint path solves dq/ds = J(q)^+ V for s in [0, 1]
 (Mahalingam and Chakraborty, ICRA 2023). It is followed here by the classical Runge-Kutta method in
-small steps, each aimed anew at the guiding pose so that the path ends on it. The contract in words
+small steps, each aimed at the guiding pose again so that the path ends on it. The contract in words
 is docs/numerical_contract.md.
 """
 

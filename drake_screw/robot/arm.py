@@ -22,8 +22,8 @@ class Arm:
 
     Args:
         plant: finalized; it stays the source of truth for everything here.
-        joint_names: the arm's n joints, base to hand.
-        end_effector: name of the frame E that is led along the screws.
+        joint_names: the arm's n joints, base to end effector.
+        end_effector: name of the frame E that follows the screws.
         parked: positions of other joints (rad, m) by name; the rest keep the plant's defaults.
 
     Raises:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.screws import adjoint, exp
+from drake_screw.screws.rotations import skew
 from drake_screw.typing import Array
 
 
@@ -16,7 +18,7 @@ class ScrewChain:
     """``X_WE(q) = exp(S_1 q_1) ... exp(S_n q_n) home`` (Brockett 1984; Modern Robotics, ch. 4).
 
     Attributes:
-        joint_names: n names, base to hand.
+        joint_names: n names, base to end effector.
         screws: (n, 6) the spatial twist [w; v] of each joint at q = 0, in W about its origin.
             A revolute joint has |w| = 1; a prismatic one w = 0 and |v| = 1.
         home: (4, 4) X_WE at q = 0.
@@ -34,6 +36,34 @@ class ScrewChain:
         """Number of joints."""
         return len(self.joint_names)
 
+    def motions(self, q: ArrayLike) -> Array:
+        """How every joint moves what lies behind it: exp(S_1 q_1) ... exp(S_i q_i) for every i.
+
+        For a unit twist exp(S q) is a polynomial in the matrix S with coefficients that depend on
+        q only (Modern Robotics, eq. 3.51 and 3.88), so all joints take one matrix product.
+
+        Args:
+            q: (N, n) rad or m.
+
+        Returns:
+            (n, N, 4, 4).
+        """
+        angle = np.asarray(q, dtype=float).T
+        one = np.ones_like(angle)
+        c = np.stack([one, angle, 1.0 - np.cos(angle), angle - np.sin(angle)], axis=-1)
+        E = (c @ self._powers).reshape(*angle.shape, 4, 4)
+        for i in range(1, len(E)):
+            E[i] = E[i - 1] @ E[i]
+        return E
+
+    @cached_property
+    def _powers(self) -> Array:
+        """(n, 4, 16) the powers 0 to 3 of each screw as a matrix."""
+        S = np.zeros((self.n, 4, 4))
+        S[:, :3, :3], S[:, :3, 3] = skew(self.screws[:, :3]), self.screws[:, 3:]
+        powers = np.stack([np.broadcast_to(np.eye(4), S.shape), S, S @ S, S @ S @ S], axis=1)
+        return powers.reshape(self.n, 4, 16)
+
     @property
     def shoulder(self) -> Array:
         """(3,) m, a point on the first revolute axis, from which `reach` is counted."""
@@ -41,10 +71,10 @@ class ScrewChain:
 
     @property
     def reach(self) -> float:
-        """An upper bound in m on the hand's distance from the shoulder.
+        """An upper bound in m on the end effector's distance from the shoulder.
 
-        From each revolute axis to the next, then to the hand, it adds up lengths that no joint
-        can change; prismatic joints add their travel.
+        From each revolute axis to the next, then to the end effector, it adds up lengths that no
+        joint can change; prismatic joints add their travel.
         """
         points = self._waypoints()
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
@@ -56,15 +86,15 @@ class ScrewChain:
         return np.linalg.norm(self.screws[:, :3], axis=1) > 0.5
 
     def _waypoints(self) -> Array:
-        """A point on each revolute axis, then the hand, by the shorter of two ways.
+        """A point on each revolute axis, then the end effector, by the shorter of two ways.
 
         Neither way has a step that a revolute joint can change. One goes out from the base, each
-        point the nearest to the one before; the other comes back from the hand.
+        point the nearest to the one before; the other comes back from the end effector.
         """
-        hand, axes = self.home[:3, 3], self.screws[self._revolute]
-        out = _nearest_points(axes, hand)[1:]
-        back = _nearest_points(axes[::-1], hand)[:0:-1]
-        ways = [np.array([*way, hand]) if way else np.array([hand, hand]) for way in (out, back)]
+        p_WE, axes = self.home[:3, 3], self.screws[self._revolute]
+        out = _nearest_points(axes, p_WE)[1:]
+        back = _nearest_points(axes[::-1], p_WE)[:0:-1]
+        ways = [np.array([*way, p_WE]) if way else np.array([p_WE, p_WE]) for way in (out, back)]
         return min(ways, key=lambda way: np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
     def pose(self, q: ArrayLike) -> Array:

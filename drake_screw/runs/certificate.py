@@ -1,97 +1,160 @@
-"""The statement a finished run makes: as data for run.json, and in words."""
+"""The statement a run makes at its end: as data for run.json, and in words."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from drake_screw.acquisition import Finished, Status
-from drake_screw.bandits.spending import attempt_delta
 from drake_screw.assembly.setup import Setup
+from drake_screw.bandits.spending import attempt_delta
+from drake_screw.runs.html import certificate_html
+
+
+@dataclass(frozen=True, kw_only=True)
+class Certificate:
+    """What a run states at its end, whether or not it certified; `docs/guarantees.md` explains it.
+
+    From `claim` on entries are None where no round was evaluated, the last two also where regions
+    are adaptive.
+
+    Attributes:
+        certified: whether every region is shown to succeed often enough.
+        demonstrations: how many were in hand.
+        regions: how many there were in the end.
+        beta, epsilon, delta: what was to be certified, see `drake_screw.bandits.Goal`.
+        collisions_checked: whether touching something counts as failing.
+        strategy: name of the bandit.
+        guarantee: what it can be relied on for, in one sentence.
+        claim: what is shown; of the weakest region where not certified.
+        coverage: beta, or where not certified the success probability shown for every region.
+        confidence: 1 - delta.
+        confidence_holds_for: "the whole run" or "each round".
+        fresh_instances: drawn for the last verdict.
+        instances_in_all_rounds: drawn in the run.
+        delta_spent_over_attempts: whether the rounds share delta.
+        attempt: number of the last round's attempt to certify, from 1.
+        delta_of_attempt: its share of delta.
+        reason: why the run ended.
+    """
+
+    certified: bool
+    demonstrations: int
+    regions: int
+    beta: float
+    epsilon: float
+    delta: float
+    collisions_checked: bool
+    strategy: str
+    guarantee: str
+    claim: str | None = None
+    coverage: float | None = None
+    confidence: float | None = None
+    confidence_holds_for: str | None = None
+    fresh_instances: int | None = None
+    instances_in_all_rounds: int | None = None
+    delta_spent_over_attempts: bool | None = None
+    attempt: int | None = None
+    delta_of_attempt: float | None = None
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        rests_on = (
+            self.coverage,
+            self.confidence,
+            self.confidence_holds_for,
+            self.fresh_instances,
+            self.instances_in_all_rounds,
+            self.delta_spent_over_attempts,
+        )
+        if self.claim is not None and None in rests_on:
+            raise ValueError("a claim without all that it rests on")
+
+    @property
+    def statement(self) -> tuple[str, ...]:
+        """The certificate in words, sentence by sentence."""
+        if self.claim is None:
+            return (_sentence(self.reason),)
+        if self.certified:
+            shown = [_sentence(self.claim)]
+        else:
+            held = f"confidence {self.confidence:g} for {self.confidence_holds_for}"
+            shown = [
+                _sentence(self.reason),
+                f"Shown so far: every region succeeds at least beta' = {self.coverage:.4f} of the "
+                f"time ({held}).",
+                f"Of the weakest region: {self.claim}.",
+            ]
+        return (*shown, self._scope(), self._evidence())
+
+    def _scope(self) -> str:
+        touching = " that touches nothing"
+        collisions = touching if self.collisions_checked else "; collisions do not count"
+        return (
+            f"This is of {self.regions} regions, with {self.demonstrations} "
+            f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
+            "in each region. To succeed is to have a plan within the joint limits of the robot's "
+            f"model{collisions}."
+        )
+
+    def _evidence(self) -> str:
+        shown = (
+            f"Shown by {self.strategy} on {self.fresh_instances:,} fresh instances "
+            f"({self.instances_in_all_rounds:,} in all rounds)"
+        )
+        if not self.delta_spent_over_attempts:
+            shown += "; delta is not spent over attempts, so several rounds may err more often"
+        elif self.attempt is not None:
+            shown += (
+                f"; attempt {self.attempt} to certify, given {self.delta_of_attempt:.4g} of "
+                f"delta = {self.delta:g}"
+            )
+        return f"{shown}."
+
+    def _repr_html_(self) -> str:
+        return certificate_html(self.certified, self.statement)
 
 
 def certificate(
-    setup: Setup, finished: Finished, rounds: Sequence[Mapping[str, Any]]
-) -> dict[str, Any]:
-    """What a finished run states, in plain data; `docs/guarantees.md` explains every entry.
+    setup: Setup, finished: Finished, *, attempt: int = 1, instances: int = 0
+) -> Certificate:
+    """What a finished run states.
 
     Args:
         setup: of the run.
         finished: its last event.
-        rounds: the entries of run.json on its rounds.
+        attempt: 1 + the number of rounds before the last whose verdict was `attempted`.
+        instances: drawn in all rounds.
     """
-    verdict, block, bandit = finished.verdict, setup.scenario.coverage, setup.bandit
-    stated: dict[str, Any] = {
-        "certified": finished.status is Status.CERTIFIED,
-        "demonstrations": len(finished.demonstrations),
-        "regions": setup.regions.K if verdict is None else len(verdict.samples),
-        "beta": block.beta,
-        "epsilon": block.epsilon,
-        "delta": block.delta,
-        "collisions_checked": setup.scenario.planner.collision,
-        "strategy": bandit.name,
-        "guarantee": bandit.guarantee,
-    }
-    if verdict is None:
-        return stated
-    spent = bool(getattr(bandit, "spend", True))
-    stated |= {
-        "claim": verdict.claim,
-        "coverage": block.beta if verdict.certified else verdict.coverage,
-        "confidence": 1.0 - block.delta,
-        "confidence_holds_for": "the whole run" if spent else "each round",
-        "fresh_instances": verdict.total_samples,
-        "instances_in_all_rounds": sum(sum(entry["samples"]) for entry in rounds),
-        "delta_spent_over_attempts": spent,
-    }
-    if setup.tree is None:
-        attempt = 1 + sum(entry["verdict"]["attempted"] for entry in rounds[:-1])
-        share = attempt_delta(block.delta, attempt, spend=spent)
-        stated |= {"attempt": attempt, "delta_of_attempt": share}
-    return stated
-
-
-def statement(stated: Mapping[str, Any], reason: str) -> list[str]:
-    """A certificate in words, a line for each sentence.
-
-    Args:
-        stated: by `certificate`.
-        reason: why the run ended.
-    """
-    lines = [] if stated["certified"] else [f"{_sentence(reason)}"]
-    if "claim" not in stated:
-        return lines
-    held = f"confidence {stated['confidence']:g} for {stated['confidence_holds_for']}"
-    if stated["certified"]:
-        lines.append(_sentence(stated["claim"]))
-    else:
-        lines.append(
-            f"Shown so far: every region succeeds at least beta' = {stated['coverage']:.4f} of the "
-            f"time ({held})."
-        )
-        lines.append(f"Of the weakest region: {stated['claim']}.")
-    count = stated["demonstrations"]
-    collisions = (
-        " that touches nothing" if stated["collisions_checked"] else "; collisions do not count"
+    verdict, goal, bandit = finished.verdict, setup.scenario.coverage, setup.bandit
+    shown: dict[str, Any] = {}
+    if verdict is not None:
+        spent = bool(getattr(bandit, "spend", True))
+        shown = {
+            "claim": verdict.claim,
+            "coverage": goal.beta if verdict.certified else verdict.coverage,
+            "confidence": 1.0 - goal.delta,
+            "confidence_holds_for": "the whole run" if spent else "each round",
+            "fresh_instances": verdict.total_samples,
+            "instances_in_all_rounds": instances,
+            "delta_spent_over_attempts": spent,
+        }
+        if setup.tree is None:
+            share = attempt_delta(goal.delta, attempt, spend=spent)
+            shown |= {"attempt": attempt, "delta_of_attempt": share}
+    return Certificate(
+        certified=finished.status is Status.CERTIFIED,
+        demonstrations=len(finished.demonstrations),
+        regions=setup.regions.K if verdict is None else len(verdict.samples),
+        beta=goal.beta,
+        epsilon=goal.epsilon,
+        delta=goal.delta,
+        collisions_checked=setup.scenario.planner.collision,
+        strategy=bandit.name,
+        guarantee=bandit.guarantee,
+        reason=finished.reason,
+        **shown,
     )
-    lines.append(
-        f"This is of {stated['regions']} regions, with {count} "
-        f"demonstration{'' if count == 1 else 's'}, for places drawn uniformly in each region. To "
-        "succeed is to have a plan within the joint limits of the robot's model"
-        f"{collisions}."
-    )
-    shown = (
-        f"Shown by {stated['strategy']} on {stated['fresh_instances']:,} fresh instances "
-        f"({stated['instances_in_all_rounds']:,} in all rounds)"
-    )
-    if not stated["delta_spent_over_attempts"]:
-        shown += "; delta is not spent over attempts, so several rounds may err more often"
-    elif "attempt" in stated:
-        shown += (
-            f"; attempt {stated['attempt']} to certify, given {stated['delta_of_attempt']:.4g} of "
-            f"delta = {stated['delta']:g}"
-        )
-    return [*lines, f"{shown}."]
 
 
 def _sentence(text: str) -> str:

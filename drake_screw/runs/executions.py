@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from datetime import datetime
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.execution import build_station, recording_html
-from drake_screw.execution.batch import Job, StationConfig, execute_all
-from drake_screw.execution.trials import Trial, summary, trials_csv
+from drake_screw.execution.parallel import Job, StationConfig, execute_all
+from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
+from drake_screw.files import fresh_folder, write_folder
 from drake_screw.planning import Cause, Outcomes, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
-from drake_screw.assembly.setup import Setup
-from drake_screw.runs.directory import write_folder
 from drake_screw.runs.run import Run, open_run
 from drake_screw.tasks import draw
-from drake_screw.typing import Array
+from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.lifetime import scratch
 
 ROUND = 1_000_000
@@ -29,13 +29,29 @@ TRIES = 20  # times as many instances are drawn in a region at most as are wante
 SHOWN = 4  # executions in the recording
 
 
+@dataclass(frozen=True)
+class Executions:
+    """Executions of a run; as text they are what ``drake-screw execute`` prints.
+
+    Attributes:
+        folder: with table, summary and recording.
+        summary: what they show.
+    """
+
+    folder: Path
+    summary: TrialSummary
+
+    def __str__(self) -> str:
+        return f"{self.summary}\nwritten to {self.folder}"
+
+
 def execute(
-    run: Path,
+    run: PathLike,
     *,
     per_region: int = 2,
     instance: Sequence[float] | None = None,
     workers: int | None = None,
-) -> str:
+) -> Executions:
     """Plan, simulate and report executions of a run.
 
     Every instance is planned with the run's demonstrations, the nearest first, until one gives a
@@ -48,9 +64,6 @@ def execute(
             reported.
         instance: x, y and perhaps yaw of each object: execute this one instead.
         workers: processes; as many as processors if None.
-
-    Returns:
-        A summary for people.
 
     Raises:
         DrakeScrewError: the run cannot be read or has no demonstrations, the instance is not one,
@@ -71,11 +84,17 @@ def execute(
         x_y_yaw = placed(setup, instance)[None]
         outcomes = plan(x_y_yaw)
     X_WO = setup.area.X_WO(x_y_yaw)
-    by = np.argmax(outcomes.success, axis=1)
-    solved = np.flatnonzero(outcomes.any_success).tolist()
-    jobs = [Job(demonstrations[by[i]].transfer(X_WO[i]), X_WO[i]) for i in solved]
+    by = outcomes.best_attempt
+    solved = np.flatnonzero(outcomes.any_success)
+    plans = setup.batch_planner.plans(
+        demonstrations, X_WO[solved], setup.workcell.start, by[solved]
+    )
+    jobs = [
+        Job(plan, demonstrations[by[i]].transfer(X_WO[i]), X_WO[i])
+        for i, plan in zip(solved, plans, strict=True)
+    ]
     config = StationConfig(setup.robot, setup.table, setup.objects)
-    done = dict(zip(solved, execute_all(config, jobs, workers=workers), strict=True))
+    done = dict(zip(solved.tolist(), execute_all(config, jobs, workers=workers), strict=True))
     trials = []
     for i, place in enumerate(x_y_yaw):
         execution = done.get(i)
@@ -83,15 +102,13 @@ def execute(
         why = ""
         if i not in done:
             why = why_not(outcomes[i], demonstrations, X_WO[i], planner, setup)
-        elif execution is None:
-            why = "the reference planner finds none"
         region = int(setup.regions.index(place))
         trials.append(Trial(region, place, name, why, execution))
-    text = summary(trials)
+    found = summarize(trials)
 
     def fill(folder: Path) -> None:
         (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
-        (folder / "summary.txt").write_text(text + "\n")
+        (folder / "summary.txt").write_text(f"{found}\n")
         shown = [
             (trial.execution, setup.area.X_WO(trial.x_y_yaw))
             for trial in _chosen(trials)
@@ -102,7 +119,7 @@ def execute(
                 page = recording_html(shown, setup.robot, table=setup.table, objects=setup.objects)
             (folder / "executions.html").write_text(page)
 
-    folder = _new_folder(opened.directory.path / "executions")
+    folder = fresh_folder(opened.directory.path / "executions")
     try:
         write_folder(folder, fill)
     except OSError as error:
@@ -111,10 +128,10 @@ def execute(
             remedy="Executions are written beside the run; make its folder writable.",
             file=folder,
         ) from error
-    return f"{text}\nwritten to {folder}"
+    return Executions(folder, found)
 
 
-def station_graphviz(run: Path) -> str:
+def station_graphviz(run: PathLike) -> str:
     """The simulated diagram of a run as GraphViz text.
 
     Raises:
@@ -146,14 +163,14 @@ def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
         RunDirectoryError: it has none.
         RecordingError: one cannot be read.
     """
-    entries = run.directory.record["demonstrations"]
-    if not entries:
+    count = len(run.directory.record.demonstrations)
+    if count == 0:
         raise RunDirectoryError(
             "this run has no demonstrations yet",
             remedy=f"Carry it on first: drake-screw run --resume {run.directory.path}",
             file=run.directory.path,
         )
-    return tuple(run.setup.learn(run.stored(number)[0]) for number in range(len(entries)))
+    return run.reader.demonstrations(count)
 
 
 def placed(setup: Setup, numbers: Sequence[float]) -> Array:
@@ -164,17 +181,16 @@ def placed(setup: Setup, numbers: Sequence[float]) -> Array:
     Raises:
         ScenarioError: the wrong number of numbers.
     """
-    area = setup.area
-    k, names = len(area.objects), ", ".join(o.name for o in area.objects)
-    if len(numbers) not in (2 * k, 3 * k) or not np.isfinite(numbers).all():
+    objects = setup.area.objects
+    try:
+        instance = np.reshape(np.asarray(numbers, dtype=float), (1, len(objects), -1))
+        return setup.area.complete(instance)[0]
+    except ValueError as error:
         raise ScenarioError(
             f"an instance of {len(numbers)} numbers: {' '.join(f'{v:g}' for v in numbers)}",
-            remedy=f"Give x and y in m, and perhaps yaw in rad, of each of: {names}.",
-        )
-    x_y_yaw = area.lower.copy()
-    given = np.asarray(numbers, dtype=float).reshape(k, -1)
-    x_y_yaw[:, : given.shape[1]] = given
-    return x_y_yaw
+            remedy="Give x and y in m, and perhaps yaw in rad, of each of: "
+            f"{', '.join(o.name for o in objects)}.",
+        ) from error
 
 
 def collision_free_planner(setup: Setup) -> CollisionFreePlanner:
@@ -189,9 +205,7 @@ def why_not(
     planner: CollisionFreePlanner,
     setup: Setup,
 ) -> str:
-    """Why no demonstration solves an instance, by the attempt that got farthest.
-
-    A plan that keeps the limits all the way but collides has got farther than any that does not.
+    """Why no demonstration solves an instance, by the best attempt.
 
     Args:
         outcomes: (D,).
@@ -200,16 +214,16 @@ def why_not(
         planner: that gave the outcomes.
         setup: of the scenario.
     """
-    collides = outcomes.cause == Cause.COLLISION
-    best = int(np.lexsort((outcomes.fraction, outcomes.segment, collides))[-1])
+    best = int(outcomes.best_attempt)
     cause, segment = Cause(int(outcomes.cause[best])), int(outcomes.segment[best]) + 1
-    name = demonstrations[best].name
+    chosen, start = demonstrations[best], setup.workcell.start
+    name = chosen.name
     match cause:
         case Cause.JOINT_LIMIT:
             joint = setup.workcell.arm.joint_names[int(outcomes.joint[best])]
             return f"with {name}, {joint} meets its limit in segment {segment}"
         case Cause.COLLISION:
-            hit = planner.checker.explain(demonstrations[best], X_WO, setup.workcell.start)
+            hit = planner.checker.explain(planner.planner.plan(chosen, X_WO, start), X_WO)
             return f"with {name}, {hit}"
         case _:
             return f"with {name}, segment {segment} is out of reach"
@@ -262,12 +276,3 @@ def _chosen(trials: Sequence[Trial]) -> list[Trial]:
     worst = sorted(executed, key=badness, reverse=True)[: SHOWN // 2]
     rest = [trial for trial in executed if trial not in worst]
     return worst + rest[:: max(1, -(-len(rest) // (SHOWN - len(worst))))]
-
-
-def _new_folder(parent: Path) -> Path:
-    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-    folder, count = parent / stamp, 1
-    while folder.exists():
-        count += 1
-        folder = parent / f"{stamp}_{count}"
-    return folder

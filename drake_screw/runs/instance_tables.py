@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.errors import ScenarioError, nearest
+from drake_screw.files import csv_text
 from drake_screw.planning import Outcomes
 from drake_screw.tasks import AXES, WorkArea
 from drake_screw.typing import Array
@@ -93,5 +94,4 @@ def outcomes_csv(x_y_yaw: Array, outcomes: Outcomes, names: list[str], area: Wor
             header.append(axis if len(area.objects) == 1 else f"{item.name}.{axis}")
             cells.append([f"{v:.9g}" for v in values.tolist()])
     cells += outcomes.codes().T.tolist()
-    lines = [",".join([*header, *names]), *(",".join(row) for row in zip(*cells, strict=True))]
-    return "\n".join(lines) + "\n"
+    return csv_text([[*header, *names], *zip(*cells, strict=True)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from pydrake.geometry import Meshcat, MeshcatParams
@@ -10,15 +10,15 @@ from pydrake.geometry import Meshcat, MeshcatParams
 from drake_screw.acquisition import RoundFinished
 from drake_screw.assembly.setup import Setup
 from drake_screw.visualization import Scene, save_heat_map, save_run_figure
+from drake_screw.visualization.lifetime import scratch
+
+PICTURE = "rounds.png"
+"""The course of the whole run."""
 
 
-def draw_round(setup: Setup) -> Callable[[RoundFinished, Path], None]:
-    """A function that draws a round as ``<stem>.png`` and ``<stem>.svg``."""
-
-    def draw(event: RoundFinished, stem: Path) -> None:
-        save_heat_map(event, event.regions, stem, scenario=setup.scenario.name)
-
-    return draw
+def draw_round(setup: Setup, event: RoundFinished, stem: Path) -> None:
+    """Draw a round as ``<stem>.png`` and ``<stem>.svg``."""
+    save_heat_map(event, event.regions, stem, scenario=setup.scenario.name)
 
 
 def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> None:
@@ -26,16 +26,23 @@ def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> Non
     if not rounds:
         return
     name, regions = setup.scenario.name, [event.regions for event in rounds]
-    save_run_figure(rounds, regions, folder / "rounds", scenario=name, beta=setup.goal.beta)
+    stem = folder / PICTURE.removesuffix(".png")
+    save_run_figure(rounds, regions, stem, scenario=name, beta=setup.goal.beta)
+    with scratch():
+        _save_scene(setup, rounds, folder / "meshcat.html")
+
+
+def _save_scene(setup: Setup, rounds: Sequence[RoundFinished], file: Path) -> None:
     scene = make_scene(setup)
     for event in rounds:
         scene.show_round(event, event.regions)
-    scene.save_html(folder / "meshcat.html")
+    scene.save_html(file)
 
 
-def make_scene(setup: Setup) -> Scene:
-    """A Meshcat scene of a scenario, served on localhost only."""
-    meshcat = Meshcat(MeshcatParams(host="localhost"))
+def make_scene(setup: Setup, meshcat: Meshcat | None = None) -> Scene:
+    """The scene of a scenario, in a Meshcat of its own on localhost if none is given."""
+    if meshcat is None:
+        meshcat = Meshcat(MeshcatParams(host="localhost"))
     return Scene(
         meshcat,
         setup.robot,

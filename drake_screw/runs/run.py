@@ -3,38 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from datetime import datetime
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Unpack
 
-import numpy as np
-
 from drake_screw.acquisition import (
-    Evaluation,
     Event,
     Finished,
-    Lesson,
     RegionsEvaluated,
     RoundFinished,
     Status,
-    Suggestion,
-    TreeEvaluator,
-    acquire,
 )
-from drake_screw.bandits import Verdict
-from drake_screw.demonstrations import Demonstration, Recording
-from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.assembly.setup import Parts, Setup
-from drake_screw.runs.certificate import certificate
-from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.files import file_hash
+from drake_screw.runs.certificate import Certificate, certificate
+from drake_screw.runs.codec import FORMAT
+from drake_screw.runs.directory import SCENARIO, RunDirectory, now, versions
+from drake_screw.runs.html import certificate_html, run_html
 from drake_screw.runs.narration import describe
-from drake_screw.runs.pictures import draw_round, draw_run
-from drake_screw.runs.directory import LOG, SCENARIO, RunDirectory, file_hash
+from drake_screw.runs.pictures import PICTURE, draw_round, draw_run
+from drake_screw.runs.reader import RunReader
+from drake_screw.runs.records import RunRecord
+from drake_screw.runs.resuming import carry_on
+from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
-from drake_screw.visualization.lifetime import scratch
-
 
 Listener = Callable[[Event], None]
 """Is called with the events of a run, in their order."""
@@ -51,6 +46,16 @@ class Run:
 
     setup: Setup
     directory: RunDirectory
+
+    @cached_property
+    def reader(self) -> RunReader:
+        """What the directory holds."""
+        return RunReader(self.setup, self.directory)
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """What the run states; None before its end."""
+        return self.directory.record.certificate
 
     def events(self, listeners: Sequence[Listener] = ()) -> Iterator[Event]:
         """Carry the run out from where its directory leaves off, or from the start.
@@ -75,50 +80,37 @@ class Run:
             for listener in listeners:
                 listener(event)
 
-        self.directory.save(status=Status.RUNNING.value, reason=None)
+        self.directory.save(status=Status.RUNNING, reason=None)
         try:
-            for event in self._acquire(progress):
+            for event in carry_on(self.reader, progress):
                 self._record(event)
                 for listener in listeners:
                     listener(event)
                 yield event
         except BaseException as error:
-            if self.directory.record["status"] == Status.RUNNING:
+            if self.directory.record.status is Status.RUNNING:
                 interrupted = isinstance(error, KeyboardInterrupt | GeneratorExit)
                 reason = "interrupted" if interrupted else f"{type(error).__name__}: {error}"
-                self.directory.save(status=Status.INTERRUPTED.value, reason=reason)
-                self._log(reason)
+                self.directory.save(status=Status.INTERRUPTED, reason=reason)
+                self.directory.log(reason)
             raise
 
     def replay(self) -> Iterator[Event]:
-        """Tell the stored events of a finished run again, and write nothing.
+        """The stored events of a finished run; nothing is computed again, and nothing written.
 
         Raises:
             RunDirectoryError: the run has not finished, or what is stored of it is not whole.
         """
-        status = self.directory.record["status"]
-        if status not in (Status.CERTIFIED, Status.INSUFFICIENT):
+        if not self.directory.record.ended:
             raise RunDirectoryError(
-                f"this run has not finished; its status is '{status}'",
+                f"this run has not finished; its status is '{self.directory.record.status}'",
                 remedy=f"Finish it first: drake-screw run --resume {self.directory.path}",
                 file=self.directory.path,
             )
-        rounds = 0
-        for event in self._acquire(None, told=True):
-            rounds += isinstance(event, RoundFinished)
-            if isinstance(event, Finished):
-                if event.status != status or rounds != len(self.directory.record["rounds"]):
-                    raise RunDirectoryError(
-                        f"damaged: it ends as '{event.status}' after {rounds} rounds; run.json "
-                        f"says '{status}' after {len(self.directory.record['rounds'])}",
-                        remedy="Restore it, or run the scenario again.",
-                        file=self.directory.path,
-                    )
-                event = replace(event, reason=self.directory.record["reason"])
-            yield event
+        yield from self.reader.events()
 
     def _check_parts(self) -> None:
-        missing = set(self.directory.record.get("passed_in", ())) - set(self.setup.passed_in)
+        missing = set(self.directory.record.passed_in) - set(self.setup.passed_in)
         if missing:
             parts = ", ".join(f"{name}=..." for name in sorted(missing))
             raise RunDirectoryError(
@@ -128,136 +120,41 @@ class Run:
                 file=self.directory.path,
             )
 
-    def remembered(self, round: int) -> tuple[Evaluation, Verdict] | None:
-        """What the directory knows of a round (from 0); None if it is not there.
-
-        Raises:
-            RunDirectoryError: it is damaged, or does not belong to the scenario beside it.
-        """
-        found = self.directory.remembered_round(round)
-        if found is not None:
-            evaluation, verdict = found
-            K = evaluation.partition(self.setup.regions).K
-            if len(verdict.samples) != K or (evaluation.region >= K).any():
-                raise RunDirectoryError(
-                    f"round {round + 1} does not fit the scenario beside it",
-                    remedy="Restore the directory, or run the scenario again.",
-                    file=self.directory.round_folder(round),
-                )
-        return found
-
-    def _acquire(
-        self, progress: Callable[[RegionsEvaluated], None] | None, *, told: bool = False
-    ) -> Iterator[Event]:
-        """The loop; where it is just `told` again, nobody is asked and nothing is evaluated."""
-        setup, scenario = self.setup, self.setup.scenario
-        evaluator = setup.evaluator(progress)
-
-        def evaluate(
-            round: int, demonstrations: tuple[Demonstration, ...], attempt: int
-        ) -> tuple[Evaluation, Verdict]:
-            remembered = self.remembered(round)
-            if remembered is None:
-                if told:
-                    raise self._lacks(f"round {round + 1}")
-                return evaluator.evaluate(round, demonstrations, attempt)
-            if isinstance(evaluator, TreeEvaluator):
-                evaluator.remember(remembered[0])
-            return remembered
-
-        initial = setup.initial
-        if not isinstance(initial, int):
-            if told and len(initial) > len(self.directory.record["demonstrations"]):
-                raise self._lacks("the initial demonstrations")
-            initial = tuple(
-                self._kept(i, recording, "given in the scenario")
-                for i, recording in enumerate(initial)
-            )
-        return acquire(
-            evaluate,
-            _KeptTeacher(self, told),
-            setup.learn,
-            setup.regions,
-            initial=initial,
-            budget=scenario.demonstrations.budget,
-            seed=scenario.seed,
-        )
-
-    def _kept(self, number: int, recording: Recording, remark: str) -> Recording:
-        """A recording as the run directory has it, where it is put first if it is new.
-
-        What is learned from is always what the files say, so that a resumed run cannot differ.
-        """
-        if number >= len(self.directory.record["demonstrations"]):
-            held = self.setup.scenario.robot.parked
-            self.directory.add_demonstration(number, recording, remark, held)
-        return self.stored(number)[0]
-
-    def stored(self, number: int) -> tuple[Recording, str]:
-        """A recording of the run directory, and what was remarked on it."""
-        if number >= len(self.directory.record["demonstrations"]):
-            raise self._lacks(f"demonstration {number + 1}")
-        entry = self.directory.record["demonstrations"][number]
-        recorder = self.setup.recorder_of(entry.get("robot"))
-        stored = recorder.read(self.directory.path / entry["folder"])
-        return replace(stored, name=entry["name"]), entry["remark"]
-
     def _record(self, event: Event) -> None:
-        self._log(describe(event, self.setup.regions))
+        self.directory.log(describe(event, self.setup.regions))
         if isinstance(event, RoundFinished):
-            if event.round >= len(self.directory.record["rounds"]):
-                self.directory.add_round(event, event.regions, draw_round(self.setup))
+            if event.round >= self.reader.rounds:
+                self.directory.add_round(event, lambda e, stem: draw_round(self.setup, e, stem))
         elif isinstance(event, Finished):
-            with scratch():
-                draw_run(self.setup, self._rounds(), self.directory.path)
+            draw_run(self.setup, self.reader.all_rounds(), self.directory.path)
+            rounds = self.directory.record.rounds
             self.directory.save(
-                status=event.status.value,
+                status=event.status,
                 reason=event.reason,
-                certificate=certificate(self.setup, event, self.directory.record["rounds"]),
-                finished=datetime.now().astimezone().isoformat(timespec="seconds"),
+                certificate=certificate(
+                    self.setup,
+                    event,
+                    attempt=1 + sum(entry.verdict.attempted for entry in rounds[:-1]),
+                    instances=sum(sum(entry.samples) for entry in rounds),
+                ),
+                finished=now(),
             )
 
-    def _rounds(self) -> list[RoundFinished]:
-        """The run's rounds, told again from its directory."""
-        return [e for e in self._acquire(None, told=True) if isinstance(e, RoundFinished)]
-
-    def _lacks(self, what: str) -> RunDirectoryError:
-        return RunDirectoryError(
-            f"damaged: {what} is missing",
-            remedy="Restore it, or run the scenario again.",
-            file=self.directory.path,
+    def _repr_html_(self) -> str:
+        record, picture = self.directory.record, self.directory.path / PICTURE
+        stated = record.certificate
+        facts = (
+            ("scenario", record.scenario),
+            ("status", ": ".join(filter(None, (record.status, record.reason)))),
+            ("demonstrations", len(record.demonstrations)),
+            ("rounds", len(record.rounds)),
+            ("directory", self.directory.path),
         )
-
-    def _log(self, text: str) -> None:
-        stamp = datetime.now().astimezone().isoformat(timespec="seconds")
-        with (self.directory.path / LOG).open("a") as log:
-            log.writelines(f"{stamp} {line}\n" for line in text.splitlines())
-
-
-@dataclass(frozen=True)
-class _KeptTeacher:
-    """Asks the scenario's teacher only what the run directory does not know yet."""
-
-    run: Run
-    told: bool
-
-    def demonstrate(
-        self,
-        suggestion: Suggestion,
-        *,
-        number: int,
-        used: tuple[Recording, ...],
-        rng: np.random.Generator,
-    ) -> Lesson:
-        run = self.run
-        if number < len(run.directory.record["demonstrations"]):
-            return Lesson(*run.stored(number))
-        if self.told:
-            return Lesson(None, "the teacher had no more")
-        lesson = run.setup.teacher.demonstrate(suggestion, number=number, used=used, rng=rng)
-        if lesson.recording is None:
-            return lesson
-        return Lesson(run._kept(number, lesson.recording, lesson.remark), lesson.remark)
+        return run_html(
+            facts,
+            "" if stated is None else certificate_html(stated.certified, stated.statement),
+            picture if record.ended and picture.is_file() else None,
+        )
 
 
 def new_run(scenario: Scenario, output: PathLike | None = None, **parts: Unpack[Parts]) -> Run:
@@ -272,22 +169,32 @@ def new_run(scenario: Scenario, output: PathLike | None = None, **parts: Unpack[
         DrakeScrewError: anything it names cannot be used; nothing is written then.
     """
     setup = Setup(scenario, **parts)
-    model = setup.workcell.model_file
     for part in (setup.strategy, setup.bandit, setup.teacher, setup.initial):
         assert part is not None
-    facts = {
-        "seed": scenario.seed,
-        "strategy": setup.bandit.name,
-        "beta": scenario.coverage.beta,
-        "epsilon": scenario.coverage.epsilon,
-        "delta": scenario.coverage.delta,
-        "regions": setup.regions.K if setup.tree is None else "adaptive",
-        "passed_in": list(setup.passed_in),
-        "model": str(model),
-        "hashes": {name: file_hash(file) for name, file in _models(setup).items()},
-    }
+    goal = scenario.coverage
+    record = RunRecord(
+        format=FORMAT,
+        scenario=scenario.name,
+        status=Status.RUNNING,
+        reason=None,
+        seed=scenario.seed,
+        strategy=setup.bandit.name,
+        beta=goal.beta,
+        epsilon=goal.epsilon,
+        delta=goal.delta,
+        regions=setup.regions.K if setup.tree is None else "adaptive",
+        passed_in=setup.passed_in,
+        model=str(setup.workcell.model_file),
+        hashes={name: file_hash(file) for name, file in _models(setup).items()},
+        versions=versions(),
+        started=now(),
+        finished=None,
+        certificate=None,
+        demonstrations=(),
+        rounds=(),
+    )
     path = None if output is None else Path(output)
-    return Run(setup, RunDirectory.create(path, scenario.name, dump_scenario(scenario), facts))
+    return Run(setup, RunDirectory.create(path, dump_scenario(scenario), record))
 
 
 def open_run(path: PathLike, **parts: Unpack[Parts]) -> Run:
@@ -313,7 +220,7 @@ def open_run(path: PathLike, **parts: Unpack[Parts]) -> Run:
             line=error.line,
         ) from error
     for name, model in _models(setup).items():
-        if file_hash(model) != directory.record["hashes"].get(name):
+        if file_hash(model) != directory.record.hashes.get(name):
             raise RunDirectoryError(
                 f"the robot model {model} has changed since this run",
                 remedy="Put the model back as it was, or run the scenario again.",
@@ -334,21 +241,20 @@ def resumable(run: Run) -> Run:
     Raises:
         RunDirectoryError: it has ended.
     """
-    status = run.directory.record["status"]
-    if status in (Status.CERTIFIED, Status.INSUFFICIENT):
+    record = run.directory.record
+    if record.ended:
         raise RunDirectoryError(
-            f"this run has ended ({status}); there is nothing to resume",
+            f"this run has ended ({record.status}); there is nothing to resume",
             remedy=f"See it with: drake-screw report {run.directory.path}",
             file=run.directory.path,
         )
     return run
 
 
-def redraw(run: Run) -> list[RoundFinished]:
-    """Draw all pictures of a finished run again; returns its rounds."""
-    rounds = [e for e in run.replay() if isinstance(e, RoundFinished)]
+def redraw(run: Run) -> None:
+    """Draw the pictures of all rounds, and of the whole run, again."""
+    rounds = run.reader.all_rounds()
     for event in rounds:
-        draw_round(run.setup)(event, run.directory.round_folder(event.round) / "heat_map")
-    with scratch():
-        draw_run(run.setup, rounds, run.directory.path)
-    return rounds
+        stem = run.directory.round_folder(event.round) / "heat_map"
+        draw_round(run.setup, event, stem)
+    draw_run(run.setup, rounds, run.directory.path)

@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import yaml
+from pydantic import ValidationError
 
 from drake_screw.errors import ScenarioError
 from drake_screw.resources import SCENARIO_SUFFIXES, find_resource
-from drake_screw.scenario.checks import Problem, find_problems
-from drake_screw.scenario.convert import from_tree, to_plain
+from drake_screw.scenario.block import Problem
+from drake_screw.scenario.problems import problems_of
 from drake_screw.scenario.schema import Scenario
-from drake_screw.scenario.yaml_marks import Dumper, Entries, Node, Place, Scalar, locate, parse, put
+from drake_screw.scenario.yaml_marks import (
+    Dumper,
+    Entries,
+    Node,
+    Place,
+    Scalar,
+    locate,
+    parse,
+    plain,
+    put,
+)
+from drake_screw.typing import PathLike
 
 
-def load_scenario(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scenario:
+def load_scenario(name_or_path: PathLike, overrides: Sequence[str] = ()) -> Scenario:
     """Reads a scenario file, fills in defaults and makes its paths absolute.
 
     Opens no other file: a model or a recording that does not exist shows when it is used.
@@ -41,12 +52,11 @@ def load_scenario(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Sc
         )
     for text in overrides:
         tree = _override(tree, text)
-    problems: list[Problem] = []
-    scenario = from_tree(Scenario, tree, (), problems)
-    problems = problems or list(find_problems(scenario))
-    if problems:
-        raise _error(problems, tree, file)
-    return replace(scenario, source=file)
+    data = plain(tree)
+    try:
+        return Scenario.model_validate(data).read_from(file)
+    except ValidationError as error:
+        raise _error(problems_of(error, data), tree, file) from None
 
 
 def dump_scenario(scenario: Scenario) -> str:
@@ -54,9 +64,8 @@ def dump_scenario(scenario: Scenario) -> str:
 
     Numbers are exact. Paths are absolute, so that the text can be put anywhere.
     """
-    plain = to_plain(scenario)
     return yaml.dump(
-        plain,
+        scenario.model_dump(mode="json", exclude_none=True),
         Dumper=Dumper,
         default_flow_style=None,
         sort_keys=False,

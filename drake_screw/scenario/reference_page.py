@@ -1,23 +1,26 @@
 """The reference page of scenario files, written from the schema so that the two cannot differ.
 
-``python -m drake_screw.scenario.reference_page > docs/scenario.md`` writes it anew.
+``python -m drake_screw.scenario.reference_page > docs/scenario.md`` writes it.
 """
 
 from __future__ import annotations
 
 import inspect
-import math
 import re
 import sys
 import textwrap
-from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, Field, fields, is_dataclass
-from types import NoneType
-from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
-from drake_screw.bandits import STRATEGIES, Goal, make_strategy
-from drake_screw.scenario.convert import describe
-from drake_screw.scenario.schema import NAME_PATTERN, CoverageBlock, Interval, Scenario
+from drake_screw.plugins import BUILT_IN, find
+from drake_screw.scenario.json_schema import (
+    Schema,
+    alternatives,
+    describe,
+    json_schema,
+    limits,
+    resolved,
+)
 
 COMMAND = "python -m drake_screw.scenario.reference_page > docs/scenario.md"
 
@@ -37,7 +40,7 @@ teacher: {kind: simulated, motion: pouring}
 """A scenario file with nothing but what every one must have."""
 
 _INTRODUCTION = """\
-<!-- Do not edit. Written from drake_screw/scenario/schema.py by:
+<!-- Do not edit. Written from the schema in drake_screw/scenario by:
      {command} -->
 # Scenario files
 
@@ -52,7 +55,8 @@ The smallest file that runs has just the keys without a default:
 
 Save it as `my_pouring.yaml`, look at it with `drake-screw check my_pouring.yaml`, and run it with
 `drake-screw run my_pouring.yaml`. The shipped scenarios, [pouring](../scenarios/pouring.yaml) and
-[scooping](../scenarios/scooping.yaml), have comments and are good to start from.
+[scooping](../scenarios/scooping.yaml), explain every key; `drake-screw init` writes a copy to start
+from.
 
 - Lengths are in metres, angles in radians. The world's frame is the frame `robot.base`, z up.
 - A path in the file is relative to the file; `~` is your home folder.
@@ -63,6 +67,9 @@ Save it as `my_pouring.yaml`, look at it with `drake-screw check my_pouring.yaml
 - On the command line `--set key.path=value` replaces one value: `--set coverage.beta=0.9`. Entries
   of lists are counted from 0: `--set objects.0.x=0.9`. The value is YAML; paths in it are relative
   to the folder you are in.
+- Editors that know YAML by JSON Schema complete and check the keys of a file whose first line is
+  `# yaml-language-server: $schema=` and the path of
+  [scenario.schema.json](../scenarios/scenario.schema.json), as in the shipped scenarios.
 - A run keeps its scenario with every key written out, in `scenario.yaml` of the
   [run directory](file_formats.md#run-directory).
 
@@ -88,24 +95,25 @@ _RULES = """\
 - `demonstrations.budget` is at least the number of initial demonstrations.
 - A `simulated` teacher needs `motion` and has no `folder`; a `recorded` one needs `folder` and has
   no `motion`; an `interactive` one may have a `folder` and has no `motion`.
+- `teacher.kind`, `teacher.motion` and `coverage.strategy` may also name a part of your own, as
+  `package.module:Object`, or one that an installed package declares as an entry point. Only such a
+  teacher may have further keys: it is given them as options, texts as they are written.
 - Object names differ; the range of a yaw is no wider than a full turn; the work area is within
   reach of the arm.
 """
 
 
 class _Block(NamedTuple):
-    """A block of the file: its dataclass, the keys that lead to it, and what it is."""
+    """A block of the file: the keys that lead to it, its schema, and whether it is a list's."""
 
-    kind: type
     path: str
-    meaning: str
+    schema: Schema
     several: bool
-    optional: bool
 
 
 def reference_page() -> str:
     """The whole page, in Markdown."""
-    top = _Block(Scenario, "", "", False, False)
+    top = _Block("", json_schema(), False)
     parts = [_INTRODUCTION.format(minimal=MINIMAL, command=COMMAND)]
     parts += ["## The file\n", _table(top)]
     for block in _blocks(top):
@@ -116,33 +124,25 @@ def reference_page() -> str:
 
 def _blocks(block: _Block) -> Iterator[_Block]:
     """The blocks inside a block, each before the blocks inside it."""
-    for item, hint in _keys(block.kind):
-        kinds, several = _inner(hint)
-        for kind in kinds:
-            path = f"{block.path}.{item.name}" if block.path else item.name
-            inner = _Block(kind, path, item.metadata["meaning"], several, _optional(hint))
+    for name in block.schema["properties"]:
+        inner = _inner(block, name)
+        if inner is not None:
             yield inner
             yield from _blocks(inner)
 
 
-def _inner(hint: Any) -> tuple[list[type], bool]:
-    """The blocks that a key's type names, and whether it is a list of them."""
-    several = get_origin(hint) is tuple
-    kinds = [kind for kind in (hint, *get_args(hint)) if is_dataclass(kind) and kind != Interval]
-    return [kind for kind in kinds if isinstance(kind, type)], several
-
-
-def _optional(hint: Any) -> bool:
-    return NoneType in get_args(hint)
-
-
-def _keys(kind: type) -> list[tuple[Field[Any], Any]]:
-    hints = get_type_hints(kind)
-    return [(f, hints[f.name]) for f in fields(kind) if "meaning" in f.metadata]
+def _inner(block: _Block, name: str) -> _Block | None:
+    """The block under a key, or each one of the list there."""
+    key = resolved(block.schema["properties"][name])
+    several = key.get("type") == "array" and "items" in key
+    schema = {**resolved(key["items"]), "description": key["description"]} if several else key
+    path = f"{block.path}.{name}" if block.path else name
+    return _Block(path, schema, several) if "properties" in schema else None
 
 
 def _lead(block: _Block) -> str:
-    text = f"{block.meaning[:1].upper()}{block.meaning[1:]}."
+    meaning = block.schema["description"]
+    text = f"{meaning[:1].upper()}{meaning[1:]}."
     if block.several:
         text += " A list; each entry is a mapping with these keys."
     return textwrap.fill(text, 100) + "\n"
@@ -150,81 +150,63 @@ def _lead(block: _Block) -> str:
 
 def _table(block: _Block) -> str:
     rows = ["| key | type | unit | default | limits | meaning |", "|---|---|---|---|---|---|"]
-    rows += [_row(block, item, hint) for item, hint in _keys(block.kind)]
+    rows += [_row(block, name) for name in block.schema["properties"]]
     return "\n".join(rows) + "\n"
 
 
-def _row(block: _Block, item: Field[Any], hint: Any) -> str:
-    kinds, several = _inner(hint)
-    if kinds:
-        path = f"{block.path}.{item.name}" if block.path else item.name
-        what = "a list of mappings" if several else "a mapping"
-        kind = f"{what}, see [{path}](#{path.replace('.', '')})"
-    else:
-        kind = describe(hint)
-    cells = [
-        f"`{item.name}`",
-        kind,
-        item.metadata["unit"],
-        _default(item),
-        _limits(item.metadata),
-        item.metadata["meaning"],
-    ]
+def _row(block: _Block, name: str) -> str:
+    key, inner = block.schema["properties"][name], _inner(block, name)
+    kind = describe(key)
+    if inner is not None:
+        what = "a list of mappings" if inner.several else "a mapping"
+        kind = f"{what}, see [{inner.path}](#{inner.path.replace('.', '')})"
+    default = "*required*"
+    if name not in block.schema.get("required", ()):
+        default = "each key's own" if inner and key["default"] else _value(key["default"])
+    cells = [f"`{name}`", kind, key.get("unit", ""), default, _limits(key), key["description"]]
     return "| " + " | ".join(cell.replace("|", "\\|").replace("<", "\\<") for cell in cells) + " |"
-
-
-def _default(item: Field[Any]) -> str:
-    if item.default_factory is not MISSING:
-        return _value(item.default_factory())
-    return "*required*" if item.default is MISSING else _value(item.default)
 
 
 def _value(value: Any) -> str:
     if value is None:
         return "none"
-    if is_dataclass(value) and not isinstance(value, Interval):
-        return "each key's own"
-    if isinstance(value, Interval):
-        return f"`{value.lower:g}`" if value.fixed else f"`[{value.lower:g}, {value.upper:g}]`"
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
     if isinstance(value, float):
-        return f"`{value!r}`"
-    if value == "":
-        return "empty"
-    if value in ({}, ()):
-        return "`{}`" if value == {} else "`[]`"
-    return f"`{value}`"
+        return f"`{value:.12g}`"
+    return "empty" if value == "" else f"`{value}`"
 
 
-def _limits(rules: Mapping[str, Any]) -> str:
-    if rules["choices"]:
-        return ", ".join(f"`{choice}`" for choice in rules["choices"])
-    if rules["pattern"]:
-        named = rules["pattern"] == NAME_PATTERN
-        return "letters, digits, `-`, `_`" if named else f"`{rules['pattern']}`"
-    words = (("above", "above"), ("at_least", "at least"), ("below", "below"))
-    return ", ".join(
-        f"{word} {rules[name]:g}" for name, word in words if math.isfinite(rules[name])
-    )
+def _limits(schema: Schema) -> str:
+    if "pattern" in schema:
+        return "letters, digits, `-`, `_`"
+    return ", ".join([f"`{name}`" for name in _names(schema)] or limits(schema))
+
+
+def _names(schema: Schema) -> list[str]:
+    """The names of parts that are built in, of which a value may be one."""
+    return [*schema.get("enum", ()), *(n for s in alternatives(schema) for n in _names(s))]
 
 
 def _options() -> str:
     """The options of every strategy, as their classes have them."""
-    block = CoverageBlock()
-    goal = Goal(block.beta, block.epsilon, block.delta)
     rows = ["| strategy | option | default | meaning |", "|---|---|---|---|"]
-    for name in STRATEGIES:
-        strategy = make_strategy(name, goal)
-        meanings = _arguments(type(strategy))
-        for item in fields(strategy):  # type: ignore[arg-type]
-            if item.name != "goal":
-                cells = f"`{name}`", f"`{item.name}`", _value(item.default), meanings[item.name]
+    for name in BUILT_IN["strategies"]:
+        strategy = find("strategies", name)
+        meanings = _arguments(strategy)
+        for option in inspect.signature(strategy).parameters.values():
+            if option.name != "goal":
+                cells = (
+                    f"`{name}`",
+                    f"`{option.name}`",
+                    _value(option.default),
+                    meanings[option.name],
+                )
                 rows.append(f"| {' | '.join(cells)} |")
     return "\n".join(["## Options of the strategies\n", _OPTIONS, *rows, ""])
 
 
-def _arguments(kind: type) -> dict[str, str]:
+def _arguments(kind: Any) -> dict[str, str]:
     """What the docstrings of a class and its bases say of its arguments."""
     found: dict[str, str] = {}
     for base in reversed(kind.__mro__):

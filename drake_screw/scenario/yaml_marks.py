@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -60,6 +61,26 @@ class Entries:
 
 
 Node = Scalar | Items | Entries
+
+
+class Text(str):
+    """A text that knows the folder from which a relative path in it is seen."""
+
+    folder: Path
+
+
+def plain(node: Node) -> Any:
+    """The tree as dicts, tuples and scalars, the texts among them as `Text`."""
+    if isinstance(node, Entries):
+        return {name: plain(value) for name, value in node.entries.items()}
+    if isinstance(node, Items):
+        return tuple(plain(item) for item in node.items)
+    if not isinstance(node.value, str):
+        return node.value
+    text = Text(node.value)
+    text.folder = node.place.folder
+    return text
+
 
 _TAG = "tag:yaml.org,2002:"
 _FLOAT = re.compile(

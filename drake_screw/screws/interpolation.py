@@ -168,7 +168,7 @@ def nearest_on_screw(X_WA: ArrayLike, X_WB: ArrayLike, p_WQ: ArrayLike) -> Array
 
 @dataclass(frozen=True)
 class _OriginMotion:
-    """How a frame's origin moves on a constant screw, told from where it starts.
+    """How a frame's origin moves on a constant screw, relative to where it starts.
 
     The screw's axis plays no part: it lies very far away when the screw hardly turns.
 

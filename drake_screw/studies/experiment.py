@@ -17,9 +17,9 @@ from drake_screw.acquisition import (
     Teacher,
     acquire,
 )
+from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.errors import ScenarioError
-from drake_screw.assembly.setup import Setup
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import AXES, GridRegions, WorkArea, grid_regions
 

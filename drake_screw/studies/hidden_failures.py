@@ -13,8 +13,8 @@ from drake_screw.bandits import Verdict, coverage_bound
 from drake_screw.bandits.mixture import confidence_interval
 from drake_screw.demonstrations import Demonstration
 from drake_screw.studies.experiment import Experiment, StudyRun, run_seed, split
-from drake_screw.tasks import GridRegions, draw
 from drake_screw.studies.figures import save_comparison
+from drake_screw.tasks import GridRegions, draw
 
 MOST_RUNS = 20
 EACH = 1024
@@ -42,7 +42,9 @@ class HiddenFailure:
         return float(self.fine.verdict.estimates.max())
 
 
-def find_hidden_failures(experiment: Experiment, runs: Sequence[StudyRun]) -> tuple[HiddenFailure, ...]:
+def find_hidden_failures(
+    experiment: Experiment, runs: Sequence[StudyRun]
+) -> tuple[HiddenFailure, ...]:
     """The first certified runs of the least K, evaluated with the greatest, the mildest first."""
     least, greatest = min(run.K for run in runs), max(run.K for run in runs)
     chosen = [run for run in runs if run.certified and least >= run.K][:MOST_RUNS]
@@ -53,7 +55,7 @@ def find_hidden_failures(experiment: Experiment, runs: Sequence[StudyRun]) -> tu
 
 
 def draw_hidden_failure(experiment: Experiment, runs: Sequence[StudyRun], stem: Path) -> None:
-    """Draw the worst of `find_hidden_failures` as ``<stem>.png`` and ``<stem>.svg``, if there is one.
+    """Draw the worst of `find_hidden_failures`, if any, as ``<stem>.png`` and ``<stem>.svg``.
 
     The picture says in how many of those runs a region fails more often than 1 - beta, and how
     often it fails in the middle one.

@@ -20,14 +20,16 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.scenario.loader import dump_scenario, load_scenario
-from drake_screw.studies.hidden_failures import draw_hidden_failure
+from drake_screw.files import csv_text, file_hash, fresh_folder, write_text
 from drake_screw.processes import WorkerLost, share_out
-from drake_screw.runs.directory import SCENARIO, file_hash, write_text
+from drake_screw.runs.directory import SCENARIO
+from drake_screw.scenario.loader import dump_scenario, load_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.studies.experiment import Experiment, StudyRun, split
-from drake_screw.studies.table import HEADER, csv_text, read_runs, row, summary_csv
 from drake_screw.studies.figures import Distribution, save_distributions
+from drake_screw.studies.hidden_failures import draw_hidden_failure
+from drake_screw.studies.table import HEADER, read_runs, row, summary_csv
+from drake_screw.typing import PathLike
 
 FORMAT = 1
 STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"
@@ -113,12 +115,16 @@ class Study:
             if of_K
         }
 
-    def _results(self, missing: Sequence[tuple[int, int]], workers: int | None) -> Iterator[StudyRun]:
+    def _results(
+        self, missing: Sequence[tuple[int, int]], workers: int | None
+    ) -> Iterator[StudyRun]:
         """Runs as they are finished; the arm's code is compiled here, and only once."""
         first = int(not self.experiment.setup.batch_planner.compiled)
         for K, run in missing[:first]:
             yield self.experiment.run(K, run)
-        build = partial(_experiment, self.path / SCENARIO) if workers != 1 else lambda: self.experiment
+        build = (
+            partial(_experiment, self.path / SCENARIO) if workers != 1 else lambda: self.experiment
+        )
         shared = share_out(_carry_out, missing[first:], build=build, workers=workers)
         try:
             for _, finished in shared:
@@ -146,13 +152,13 @@ class Study:
 
 
 def new_study(
-    scenario: Scenario, regions: Sequence[int], runs: int, output: Path | None = None
+    scenario: Scenario, regions: Sequence[int], runs: int, output: PathLike | None = None
 ) -> Study:
     """Check a scenario to the bottom, then make a study directory.
 
     Args:
         scenario: what to study; its own regions are not used, its seed is the study's.
-        regions: numbers of regions K, see `study_runs.split`.
+        regions: numbers of regions K, see `experiment.split`.
         runs: for each K, at least 1.
         output: directory, which must not exist or be empty; ``studies/<name>/<time>`` if None.
 
@@ -176,7 +182,7 @@ def new_study(
     for part in (setup.strategy, setup.teacher, setup.initial):
         assert part is not None
     model = setup.workcell.model_file
-    path = output or _fresh(Path("studies") / scenario.name)
+    path = fresh_folder(Path("studies") / scenario.name) if output is None else Path(output)
     record = {
         "format": FORMAT,
         "scenario": scenario.name,
@@ -214,12 +220,13 @@ def new_study(
     return Study(path, load_scenario(path / SCENARIO), record)
 
 
-def open_study(path: Path) -> Study:
+def open_study(path: PathLike) -> Study:
     """Open a study directory, to carry it on or to draw its pictures again.
 
     Raises:
         RunDirectoryError: it is not one, is damaged, or the robot model is not the same any more.
     """
+    path = Path(path)
     file = path / STUDY
     if not file.is_file():
         raise RunDirectoryError(
@@ -265,15 +272,6 @@ def numbers_of_regions(text: str) -> tuple[int, ...]:
         raise ScenarioError(
             f"'{text}' is not a list of numbers of regions", remedy="Write, say, 1,2,4,8,16."
         ) from error
-
-
-def _fresh(parent: Path) -> Path:
-    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-    path, count = parent / stamp, 1
-    while path.exists():
-        count += 1
-        path = parent / f"{stamp}_{count}"
-    return path
 
 
 def _now() -> str:

@@ -4,22 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 
 from drake_screw.errors import RunDirectoryError
+from drake_screw.files import csv_text
 from drake_screw.studies.experiment import StudyRun
 from drake_screw.studies.figures import Distribution
 
 HEADER = tuple(field.name for field in fields(StudyRun))
-
-
-def csv_text(rows: Iterable[Sequence[object]]) -> str:
-    """Rows as lines of CSV."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue()
 
 
 def row(run: StudyRun) -> tuple[object, ...]:

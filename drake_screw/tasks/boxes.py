@@ -1,4 +1,4 @@
-"""Partitions into boxes of different sizes, cut out of the unit box over the axes with room."""
+"""Partitions into boxes of different sizes, cut out of the unit box over the free axes."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class BoxRegions:
     def shares(self) -> Array:
         """(K,) share of the work area that each region takes up."""
         free = free_axes(self.area)
-        room = (self.area.upper - self.area.lower)[free]
-        return np.prod((self.upper - self.lower)[:, free] / room, axis=1)
+        extent = (self.area.upper - self.area.lower)[free]
+        return np.prod((self.upper - self.lower)[:, free] / extent, axis=1)
 
     def bounds(self, region: ArrayLike) -> tuple[Array, Array]:
         """Least and greatest x, y, yaw of regions; (...) to two arrays (..., k, 3)."""
@@ -67,19 +67,19 @@ class BoxRegions:
         return found
 
     def name(self, region: int) -> str:
-        """What people call a region: its ranges along the axes that are split."""
+        """The human-readable name of a region: its ranges along the axes that are split."""
         lower, upper = self.bounds(region)
         split = (lower > self.area.lower) | (upper < self.area.upper)
         return ranges(self.area, lower, upper, split, digits=3)
 
 
 def free_axes(area: WorkArea) -> NDArray[np.bool_]:
-    """(k, 3) which coordinates have room; a unit box over the area has an axis for each."""
+    """(k, 3) which coordinates may vary; a unit box over the area has an axis for each."""
     return area.upper > area.lower
 
 
 def from_unit_box(area: WorkArea, unit: ArrayLike) -> Array:
-    """Places in the work area from those in the unit box over its d axes with room.
+    """Places in the work area from those in the unit box over its d free axes.
 
     Args:
         area: the work area.

@@ -35,7 +35,7 @@ class Regions(Protocol):
         """The region of each instance, the nearest one if it lies outside; (..., k, 3) to (...)."""
 
     def name(self, region: int) -> str:
-        """What people call a region."""
+        """The human-readable name of a region."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class GridRegions:
         )
 
     def name(self, region: int) -> str:
-        """What people call a region: its ranges along the axes that are split."""
+        """The human-readable name of a region: its ranges along the axes that are split."""
         return ranges(self.area, *self.bounds(region), self.counts > 1)
 
 
@@ -104,7 +104,7 @@ def ranges(
     Args:
         area: names the objects.
         lower, upper: (k, 3) corners.
-        split: (k, 3) the axes to tell.
+        split: (k, 3) the axes to name.
         digits: behind the point.
     """
     several = len(area.objects) > 1

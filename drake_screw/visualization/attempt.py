@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning import Cause, Outcomes, Plan, ReferencePlanner
+from drake_screw.planning import Cause, Outcomes, Plan
 from drake_screw.robot import Arm
 from drake_screw.screws import Screw, screw_between
 from drake_screw.typing import Array
@@ -111,26 +111,21 @@ class Attempt:
 
 
 def attempt(
-    planner: ReferencePlanner,
-    number: int,
-    demonstration: Demonstration,
-    X_WO: ArrayLike,
-    q_start: ArrayLike,
+    arm: Arm, number: int, demonstration: Demonstration, X_WO: ArrayLike, plan: Plan
 ) -> Attempt:
-    """Plan an instance with a demonstration.
+    """A plan of an instance with a demonstration, to look at.
 
     Args:
-        planner: to plan with.
+        arm: that was planned for.
         number: of the demonstration, from 0.
-        demonstration: to carry over.
+        demonstration: that was carried over.
         X_WO: (k, 4, 4) the instance's objects.
-        q_start: (n,) rad or m.
+        plan: what came of it.
     """
-    X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
+    X_WO = np.asarray(X_WO, dtype=float)
     guides = demonstration.transfer(X_WO)
-    starts = np.concatenate([planner.arm.pose(q_start)[None], guides])[:-1]
-    plan = planner.plan(q_start, guides)
-    return Attempt(planner.arm, number, demonstration, X_WO, starts, guides, plan)
+    starts = np.concatenate([arm.pose(plan.q[:1]), guides])[:-1]
+    return Attempt(arm, number, demonstration, X_WO, starts, guides, plan)
 
 
 def cut_short(plan: Plan, outcome: Outcomes) -> Plan:
@@ -139,10 +134,19 @@ def cut_short(plan: Plan, outcome: Outcomes) -> Plan:
     A collision is what planning for the joints alone does not see.
     """
     segment, fraction = int(outcome.segment), float(outcome.fraction)
-    beyond = plan.segment + plan.s >= segment + fraction - 1e-9
-    last = int(np.argmax(beyond)) if beyond.any() else len(plan.q) - 1
-    kept = slice(0, last + 1)
-    return Plan(plan.q[kept], plan.segment[kept], plan.s[kept], outcome)
+    progress, end = plan.segment + plan.s, segment + fraction
+    k = int(np.searchsorted(progress, end))
+    if k == 0 or k == len(progress):
+        kept = slice(0, max(k, 1))
+        return Plan(plan.q[kept], plan.segment[kept], plan.s[kept], outcome)
+    share = (end - progress[k - 1]) / (progress[k] - progress[k - 1])
+    last = plan.q[k - 1] + share * (plan.q[k] - plan.q[k - 1])
+    return Plan(
+        np.concatenate([plan.q[:k], last[None]]),
+        np.append(plan.segment[:k], segment),
+        np.append(plan.s[:k], fraction),
+        outcome,
+    )
 
 
 def headline(attempt: Attempt) -> str:
@@ -175,7 +179,7 @@ def headline(attempt: Attempt) -> str:
 
 
 def describe_segment(attempt: Attempt, segment: int) -> str:
-    """A segment's screw in numbers for people."""
+    """A segment's screw in words and numbers."""
     screw = attempt.screws
     angle, along = float(screw.angle[segment]), float(screw.translation[segment])
     turn = f"{np.degrees(angle):.1f}°"

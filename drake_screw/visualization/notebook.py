@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import html
 from dataclasses import dataclass
 
+from markupsafe import Markup
 from pydrake.geometry import Meshcat
 
 
@@ -21,10 +21,8 @@ class Embedded:
     height: int
 
     def _repr_html_(self) -> str:
-        return (
-            f'<iframe srcdoc="{html.escape(self.page)}" width="100%" height="{self.height}" '
-            'style="border: 0"></iframe>'
-        )
+        frame = Markup('<iframe srcdoc="{}" width="100%" height="{}" style="border: 0"></iframe>')
+        return frame.format(self.page, self.height)
 
 
 def embed(meshcat: Meshcat, height: int = 480) -> Embedded:

@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.colors import Colormap, to_rgb
+from matplotlib.colors import Colormap, to_hex, to_rgb
 from numpy.typing import ArrayLike
 
 from drake_screw.planning import Cause
@@ -63,6 +63,11 @@ def failure_map() -> Colormap:
 def failure_color(probability: ArrayLike) -> Array:
     """sRGB of failure probabilities in [0, 1] or NaN; (...) to (..., 3)."""
     return np.array(failure_map()(np.ma.masked_invalid(probability)))[..., :3]
+
+
+def failure_scale() -> list[str]:
+    """Hexadecimal colours of failure probabilities from 0 to 1, for a scale in HTML."""
+    return [to_hex(color) for color in failure_color(np.linspace(0.0, 1.0, 9))]
 
 
 def ink_on(rgb: ArrayLike) -> str:

@@ -70,7 +70,7 @@ class Sample:
 
     Attributes:
         x_y_yaw: (n, k, 3) m, m, rad.
-        cause: (n,) `Cause` values; see `instance_causes`.
+        cause: (n,) `Cause` values, of the best attempts.
         total: how many instances the round had.
     """
 
@@ -80,7 +80,7 @@ class Sample:
 
     @property
     def statement(self) -> str:
-        """How much of the round is shown, for people."""
+        """How much of the round is shown, in words."""
         if len(self.cause) == self.total:
             return f"all {self.total:,} instances"
         return f"{len(self.cause):,} of {self.total:,} instances, drawn at random"
@@ -96,22 +96,7 @@ def sample(evaluation: Instances, most: int) -> Sample:
     chosen = np.arange(total)
     if total > most:
         chosen = np.sort(np.random.default_rng(0).choice(total, most, replace=False))
-    return Sample(evaluation.x_y_yaw[chosen], instance_causes(evaluation.outcomes[chosen]), total)
-
-
-def instance_causes(outcomes: Outcomes) -> NDArray[np.uint8]:
-    """What became of each instance; outcomes (N, D) to `Cause` values (N,).
-
-    SUCCESS where any demonstration gives a plan. Otherwise the cause that ended the attempt that
-    came furthest, NOT_TRIED where there was none.
-    """
-    if outcomes.shape[-1] == 0:
-        return np.full(outcomes.shape[:-1], Cause.NOT_TRIED, dtype=np.uint8)
-    progress = outcomes.segment + np.clip(outcomes.fraction.astype(float), 0.0, 0.999)
-    progress = np.where(outcomes.cause == Cause.NOT_TRIED, -1.0, progress)
-    progress = np.where(outcomes.success, np.inf, progress)
-    best = progress.argmax(axis=-1)
-    return np.take_along_axis(outcomes.cause, best[..., None], axis=-1)[..., 0]
+    return Sample(evaluation.x_y_yaw[chosen], evaluation.outcomes[chosen].best.cause, total)
 
 
 @dataclass(frozen=True, eq=False)

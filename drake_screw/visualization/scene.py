@@ -27,7 +27,7 @@ from drake_screw.tasks import Regions, WorkArea
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes
 from drake_screw.visualization.drawing import draw, draw_frames, rgba
-from drake_screw.visualization.page import Slide, slide, with_legend
+from drake_screw.visualization.legend import Slide, slide, with_legend
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,

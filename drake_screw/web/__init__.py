@@ -1,1 +1,1 @@
-"""Pages: of a run as it goes on, of a lesson, of an attempt looked at, of a whole run."""
+"""Pages: of a run as it goes on, where demonstrations are given, of an attempt, of a whole run."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from markupsafe import Markup
 
 from drake_screw.robot import ObjectConfig, TableConfig
 from drake_screw.screws import sclerp_position
@@ -23,8 +24,8 @@ def arm_sketch(
     area: WorkArea,
     objects: Sequence[ObjectConfig],
     table: TableConfig | None,
-) -> str:
-    """Two views as one SVG: the arm at its start, on its way, and where the plan ended."""
+) -> Markup:
+    """Two views as SVG: the arm at its start, on its way, and where the plan ended."""
     chosen = attempt.samples(7)
     q = attempt.plan.q[chosen]
     joints = np.stack([linkage.joint_frames(j, q)[:, :3, 3] for j in range(attempt.arm.n)], axis=1)
@@ -32,7 +33,7 @@ def arm_sketch(
     bodies = np.concatenate([joints, hand], axis=1)
     above = _view(attempt, bodies, area, objects, table, np.array([[0, -1, 0], [-1, 0, 0]]))
     side = _view(attempt, bodies, area, objects, table, np.array([[1, 0, 0], [0, 0, -1]]))
-    return (
+    return Markup(
         f'<figure class="sketch">{above}<figcaption>from above</figcaption></figure>'
         f'<figure class="sketch">{side}<figcaption>from its right side</figcaption></figure>'
     )

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from html import escape
 
 import numpy as np
+from markupsafe import Markup, escape
 from matplotlib.colors import to_hex
 
 from drake_screw.planning import Cause
@@ -20,13 +20,13 @@ from drake_screw.visualization.palette import (
     STATUS_COLORS,
     failure_color,
 )
-from drake_screw.visualization.rounds import Round, cells, sample
+from drake_screw.visualization.rounds import Round, Sample, cells, sample
 
 MAP_DOTS = 2_000
 _LINE, _FAINT = "#2b4c7e", "#c9cbd3"
 
 
-def joint_strip(attempt: Attempt, joint: int, samples: Array) -> str:
+def joint_strip(attempt: Attempt, joint: int, samples: Array) -> Markup:
     """A joint's angle along the plan, from the lower to the upper edge of its range.
 
     The drawing is 100 units wide, one g-th for each of the g segments, and 24 high; element
@@ -50,7 +50,7 @@ def joint_strip(attempt: Attempt, joint: int, samples: Array) -> str:
             f'<line x1="{x[-1]:.2f}" x2="{x[-1]:.2f}" y1="{max(y[-1] - 3, 0):.2f}" '
             f'y2="{min(y[-1] + 3, 24):.2f}" class="hit"/>'
         )
-    return (
+    return Markup(
         '<svg class="strip" viewBox="0 0 100 24" preserveAspectRatio="none">'
         '<line x1="0" x2="100" y1="2" y2="2" class="limit"/>'
         '<line x1="0" x2="100" y1="22" y2="22" class="limit"/>'
@@ -59,7 +59,7 @@ def joint_strip(attempt: Attempt, joint: int, samples: Array) -> str:
     )
 
 
-def joint_chart(attempt: Attempt) -> str:
+def joint_chart(attempt: Attempt) -> Markup:
     """All joints' angles along the plan with their limits, one panel each, as one drawing."""
     arm, samples, total = attempt.arm, attempt.samples(160), len(attempt.guides)
     width, height, left, gap = 640.0, 54.0, 118.0, 12.0
@@ -105,7 +105,7 @@ def joint_chart(attempt: Attempt) -> str:
         f'<text x="{(left + right) / 2:.0f}" y="{bottom + 44:.0f}" text-anchor="middle">'
         f"screw segment; angles in {' or '.join(units)} between their limits</text>"
     )
-    return (
+    return Markup(
         f'<svg class="chart" viewBox="0 0 {width:.0f} {bottom + 50:.0f}" '
         f'role="img" aria-label="joint angles along the plan">{"".join(parts)}</svg>'
     )
@@ -113,7 +113,7 @@ def joint_chart(attempt: Attempt) -> str:
 
 def work_area_map(
     event: Round, regions: Regions, *, here: Array | None = None, dots: int = MAP_DOTS
-) -> str:
+) -> Markup:
     """The work area from above, as the heat map shows it, small and light.
 
     y runs to the left and x away from the robot. The drawing's units are mm; ``data-y`` and
@@ -169,7 +169,13 @@ def work_area_map(
                 f'fill="{color if name == "suggested" else "none"}" stroke="{INK}" '
                 f'stroke-width="{4 if name == "suggested" else 8}" class="{name}"/>'
             )
-    return (
+    return Markup(
         f'<svg class="map" viewBox="-40 -40 {1e3 * (y1 - y0) + 80:.0f} {1e3 * (x1 - x0) + 80:.0f}" '
         f'data-y="{y1:.6f}" data-x="{x1:.6f}">{"".join(parts)}</svg>'
     )
+
+
+def map_words(event: Round, shown: Sample) -> str:
+    """What the dots of `work_area_map` are, and how many of the instances `shown` in 3-D."""
+    words = f"dots: what fails of {sample(event.evaluation, MAP_DOTS).statement}"
+    return words if len(shown.cause) == shown.total else f"{words} (in 3-D: {len(shown.cause):,})"

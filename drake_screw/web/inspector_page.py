@@ -1,114 +1,81 @@
-"""``drake-screw inspect``: a run's attempts in the browser, on a page, in the terminal."""
+"""A run's attempts in the browser: served from a program, or saved as a page."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+from markupsafe import Markup
 from pydrake.geometry import Meshcat, MeshcatParams
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.runs.inspection import Inspection, open_inspection
-from drake_screw.visualization.attempt import Attempt, headline
+from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.lifetime import page_meshcat, scratch
-from drake_screw.visualization.palette import OUTCOME_NAMES
+from drake_screw.visualization.meshcat_page import add_to_page, render
 from drake_screw.web.attempt_tables import attempts_csv, attempts_json
-from drake_screw.web.choice import Choice, changed, choose
-from drake_screw.web.panel import (
-    inspector_body,
-    where,
-    with_panel,
-)
-from drake_screw.web.panel_server import PanelServer, check_address, warning
-from drake_screw.web.stage import Stage
+from drake_screw.web.inspector_panel import KEY
+from drake_screw.web.inspector_scene import InspectorScene
+from drake_screw.web.selection import Selection, after_message
+from drake_screw.web.server import PanelServer, check_address, warning
 
-POLL = 1.0
+POLL_PERIOD = 1.0
 """s. How often a run that is still going on is asked for new rounds."""
 
 
-def inspect(
-    run: Path,
-    console: Console,
-    *,
-    round: int | None = None,
-    instance: int | None = None,
-    html: Path | None = None,
-    host: str = "localhost",
-    port: int | None = None,
-) -> None:
-    """Look at a run: in the terminal, and in the browser or on a page.
-
-    Args:
-        run: its directory, finished or not.
-        console: to write to.
-        round: counted from 1; if None the last one that asked for a demonstration.
-        instance: a row of the round's instances, from 0; if None the suggested one, or the
-            earliest failing.
-        html: a page to write, with its numbers beside it; if None, serve until interrupted.
-        host, port: as in `serve`.
-
-    Raises:
-        RunDirectoryError: the directory is damaged, of another version, or has no round yet.
-        ScenarioError: there is no such round or instance.
-    """
-    inspection = open_inspection(run)
-    choice = choose(inspection, inspection.check_round(round), instance)
-    if html is None:
-        serve(inspection, choice, console, host=host, port=port)
-    else:
-        tell_instance(inspection, choice, console)
-        page = save_page(inspection, choice, html)
-        console.print(f"written: {page}, its numbers beside it (.csv, .json)", soft_wrap=True)
-
-
 def serve(
-    inspection: Inspection,
-    choice: Choice,
-    console: Console,
+    reader: RunReader,
+    selection: Selection,
     *,
     host: str = "localhost",
     port: int | None = None,
+    announce: Callable[[str], None] = print,
+    on_selection: Callable[[Selection], None] | None = None,
 ) -> None:
     """Show a run in the browser until interrupted.
 
     Args:
-        inspection: the run.
-        choice: what to show first.
-        console: told where to look, with the first instance's table, and which ones follow.
+        reader: the run.
+        selection: what to show first.
         host: "localhost", or an address to listen on, so that others can look, too.
         port: of the page; any free one if None.
+        announce: called with the warning of an open address, with the page's address, and at the
+            end.
+        on_selection: called with the first selection, and with every one of another instance.
+
+    Raises:
+        DrakeScrewError: the page cannot be served there.
     """
     check_address(host, port)
-    stage = Stage(inspection, page_meshcat(host))
-    page = inspector_body(None)
-    name = inspection.setup.scenario.name
-    server = PanelServer(stage.meshcat.port(), page, f"{name}: inspect", host=host, port=port)
+    scene = InspectorScene(reader, page_meshcat(host))
+    title = f"{reader.setup.scenario.name}: inspect"
+    server = PanelServer(scene.meshcat.port(), _panel(None), title, host=host, port=port)
     risk = warning(host)
     if risk is not None:
-        console.print(risk, style="yellow", highlight=False, soft_wrap=True)
-    console.print(f"open {server.url} in a browser; Ctrl-C ends it", soft_wrap=True)
+        announce(risk)
+    announce(f"open {server.url} in a browser; Ctrl-C ends it")
     try:
-        server.show(stage.show(choice, live=True))
-        tell_instance(inspection, choice, console)
+        server.show(scene.show(selection, live=True))
+        if on_selection is not None:
+            on_selection(selection)
         while True:
-            message = server.message(POLL)
+            message = server.message(POLL_PERIOD)
             if message is None:
-                if inspection.refresh():
-                    server.show(stage.show(choice, live=True))
+                if reader.refresh():
+                    server.show(scene.show(selection, live=True))
                 continue
-            before, choice = choice, changed(inspection, choice, message)
-            server.show(stage.show(choice, live=True))
-            if (before.round, before.instance) != (choice.round, choice.instance):
-                _tell(inspection, choice, console)
+            before, selection = selection, after_message(reader, selection, message)
+            server.show(scene.show(selection, live=True))
+            moved = (before.round, before.instance) != (selection.round, selection.instance)
+            if moved and on_selection is not None:
+                on_selection(selection)
     except KeyboardInterrupt:
-        console.print("ended")
+        announce("ended")
     finally:
         server.close()
 
 
-def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
+def save_page(reader: RunReader, selection: Selection, file: Path) -> Path:
     """Write one instance with all its demonstrations as a page that needs no network.
 
     Beside it, with the same name, are its numbers as .json and the plans as .csv.
@@ -123,7 +90,7 @@ def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
             file=file,
         )
     with scratch():
-        page = _page(inspection, choice)
+        page = _saved_page(reader, selection)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(page, encoding="utf-8")
@@ -131,60 +98,22 @@ def save_page(inspection: Inspection, choice: Choice, file: Path) -> Path:
         raise DrakeScrewError(
             f"cannot be written: {error.strerror}", remedy="Give another --html.", file=file
         ) from error
-    if choice.instance is not None:
-        attempts = inspection.attempts(choice.round, choice.instance)
+    if selection.instance is not None:
+        attempts = reader.attempts(selection.round, selection.instance)
         file.with_suffix(".csv").write_text(attempts_csv(attempts))
-        facts = {"round": choice.round + 1, "instance": choice.instance}
-        text = attempts_json(attempts, facts, inspection.setup.area)
+        facts = {"round": selection.round + 1, "instance": selection.instance}
+        text = attempts_json(attempts, facts, reader.setup.area)
         file.with_suffix(".json").write_text(text)
     return file
 
 
-def _page(inspection: Inspection, choice: Choice) -> str:
-    stage = Stage(inspection, Meshcat(MeshcatParams(host="localhost", show_stats_plot=False)))
-    drawn = stage.show(choice, live=False)
-    title = f"{inspection.setup.scenario.name}, round {choice.round + 1}"
-    return with_panel(stage.meshcat.StaticHtml(), inspector_body(drawn), title)
+def _saved_page(reader: RunReader, selection: Selection) -> str:
+    meshcat = Meshcat(MeshcatParams(host="localhost", show_stats_plot=False))
+    state = InspectorScene(reader, meshcat).show(selection, live=False)
+    title = f"{reader.setup.scenario.name}, round {selection.round + 1}"
+    return add_to_page(meshcat.StaticHtml(), _panel(state), title=title)
 
 
-def instance_table(attempts: list[Attempt]) -> Table:
-    """All demonstrations of an instance side by side."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for name in ("", "demonstration", "outcome", "segment", "joint", "along it", "least margin"):
-        right = name in ("", "segment", "along it", "least margin")
-        table.add_column(name, justify="right" if right else "left")
-    for tried in attempts:
-        joint, margin = tried.tightest
-        names, failed, at = tried.arm.joint_names, tried.failed_segment, tried.failed_joint
-        table.add_row(
-            str(tried.number + 1),
-            tried.demonstration.name,
-            Text(OUTCOME_NAMES[tried.cause], style="green" if tried.plan.success else "yellow"),
-            "" if failed is None else f"{failed + 1} of {len(tried.guides)}",
-            "" if at is None else names[at],
-            "" if failed is None else f"{float(tried.plan.outcome.fraction):.1%}",
-            f"{margin:.3f} ({names[joint]})",
-        )
-    return table
-
-
-def tell_instance(inspection: Inspection, choice: Choice, console: Console) -> None:
-    """An instance and all its attempts in words and as a table."""
-    if choice.instance is None:
-        console.print("this round has no instances")
-        return
-    attempts = inspection.attempts(choice.round, choice.instance)
-    _tell(inspection, choice, console)
-    console.print(instance_table(attempts))
-    for tried in attempts:
-        text = f"demonstration {tried.number + 1} {headline(tried)}"
-        console.print(Text(text), soft_wrap=True)
-
-
-def _tell(inspection: Inspection, choice: Choice, console: Console) -> None:
-    if choice.instance is not None:
-        x_y_yaw = inspection.event(choice.round).evaluation.x_y_yaw[choice.instance]
-        place = where(inspection.setup.area, x_y_yaw)
-        console.print(
-            Text(f"round {choice.round + 1}, instance {choice.instance}: {place}"), soft_wrap=True
-        )
+def _panel(saved_state: dict[str, Any] | None) -> Markup:
+    """The panel of a saved page with its state, or of a live one with None."""
+    return render("drake_screw.web", "inspector.html.j2", key=KEY, saved_state=saved_state)

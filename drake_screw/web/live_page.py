@@ -6,7 +6,6 @@ import time
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import to_hex
 
 from drake_screw.acquisition import (
     DemonstrationAdded,
@@ -22,8 +21,9 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause
 from drake_screw.runs.narration import describe
-from drake_screw.visualization import Scene
+from drake_screw.runs.pictures import make_scene
 from drake_screw.visualization.lifetime import page_meshcat
+from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -31,13 +31,12 @@ from drake_screw.visualization.palette import (
     OUTCOME_NAMES,
     PAPER,
     UNKNOWN,
-    failure_color,
+    failure_scale,
 )
-from drake_screw.web.charts import work_area_map
-from drake_screw.web.panel import body, map_words, script_json
-from drake_screw.web.panel_server import PanelServer
+from drake_screw.web.charts import map_words, work_area_map
+from drake_screw.web.server import PanelServer
 
-EVERY = 0.15
+REDRAW_PERIOD = 0.15
 """s. Regions are not drawn more often than this while a round goes on."""
 
 _KEY = (
@@ -61,6 +60,9 @@ class LivePage:
 
     Attributes:
         url: of the page.
+
+    Raises:
+        DrakeScrewError: the page cannot be served there.
     """
 
     def __init__(
@@ -72,19 +74,15 @@ class LivePage:
         teach: str = "",
     ) -> None:
         self._setup = setup
-        self.meshcat = page_meshcat(host)
+        self._meshcat = page_meshcat(host)
+        self._scene = make_scene(setup, self._meshcat)
+        panel = render("drake_screw.web", "live.html.j2", ink=INK, scale=failure_scale(), key=_KEY)
         name = setup.scenario.name
-        self.scene = Scene(
-            self.meshcat, setup.robot, setup.table, setup.objects, setup.area, scenario=name
-        )
-        scale = [to_hex(color) for color in failure_color(np.linspace(0.0, 1.0, 9))]
-        lines = f"const KEY = {script_json(_KEY)}, SCALE = {script_json(scale)};"
-        panel = body("live.html", lines, ("panel.js", "live.js"))
-        self.server = PanelServer(self.meshcat.port(), panel, name, host=host, port=port)
-        self.url = self.server.url
-        self._drawn = 0.0
+        self._server = PanelServer(self._meshcat.port(), panel, name, host=host, port=port)
+        self.url = self._server.url
+        self._redrawn = 0.0
         self._teach = teach
-        self._hand: tuple[Demonstration, ...] = ()
+        self._demonstrations: tuple[Demonstration, ...] = ()
         goal = setup.goal
         self._state: dict[str, Any] = {
             "title": name,
@@ -99,83 +97,30 @@ class LivePage:
             "rounds": [],
             "demonstrations": [],
         }
-        self.server.show(self._state)
-
-    def _fill(self, event: RegionsEvaluated) -> None:
-        """Fill the regions with the failure rates of a round so far."""
-        if time.monotonic() - self._drawn < EVERY:
-            return
-        self._drawn = time.monotonic()
-        regions = self._setup.regions
-        with np.errstate(invalid="ignore"):
-            rates = event.failures / event.samples
-        if len(rates) == regions.K:
-            self.scene.show_rates(rates, regions, self._hand)
-        worst = int(np.nan_to_num(rates, nan=-1.0).argmax())
-        where = f" in region {worst}" if len(rates) > 1 else ""
-        self._say(
-            details=f"{event.samples.sum():,} instances so far; highest failure rate "
-            f"{np.nan_to_num(rates[worst]):.2%}{where}"
-        )
+        self._server.show(self._state)
 
     def __call__(self, event: Event) -> None:
         """Show an event."""
-        words = describe(event, self._setup.regions)
         match event:
             case RoundStarted():
-                self._hand = event.demonstrations
-                known = self._state["demonstrations"]
-                given = [
-                    {"number": i + 1, "color": INK, "words": d.name}
-                    for i, d in enumerate(self._hand)
-                ]
-                self._say(
-                    headline=words,
-                    details="",
-                    color=INK,
-                    teach="",
-                    demonstrations=[*known, *given[len(known) :]],
-                )
+                self._start_round(event)
             case RegionsEvaluated():
-                self._fill(event)
+                self._fill_regions(event)
             case RoundFinished():
-                shown = self.scene.show_round(event, event.regions)
-                verdict = event.verdict
-                good = OUTCOME_COLORS[Cause.SUCCESS]
-                color = good if verdict.certified else OUTCOME_COLORS[Cause.JOINT_LIMIT]
-                line = {
-                    "number": event.round + 1,
-                    "color": color,
-                    "words": f"weakest: region {verdict.region}, "
-                    f"{verdict.estimates[verdict.region]:.2%} fail "
-                    f"(at most {verdict.upper[verdict.region]:.2%}); "
-                    f"{len(event.evaluation.region):,} instances",
-                }
-                self._say(
-                    headline=f"round {event.round + 1}: "
-                    + ("certified" if verdict.certified else "not certified"),
-                    details=f"weakest region {verdict.region}: "
-                    f"{event.regions.name(verdict.region)}; {verdict.reason}",
-                    color=color,
-                    map=work_area_map(event, event.regions),
-                    map_words=f"after round {event.round + 1}; {map_words(event, shown)}",
-                    rounds=[*self._state["rounds"], line],
-                )
+                self._finish_round(event)
             case DemonstrationRequested():
-                self.scene.show_suggestion(event.suggestion.x_y_yaw)
-                self._say(headline=words, color=INK, teach=self._teach)
+                self._scene.show_suggestion(event.suggestion.x_y_yaw)
+                words = describe(event, self._setup.regions)
+                self._update(headline=words, color=INK, teach=self._teach)
             case DemonstrationAdded():
-                line = {
-                    "number": event.number + 1,
-                    "color": INK,
-                    "words": f"{event.recording.name}: {event.remark}",
-                }
-                self._say(demonstrations=[*self._state["demonstrations"], line], teach="")
+                words = f"{event.recording.name}: {event.remark}"
+                line = {"number": event.number + 1, "color": INK, "words": words}
+                self._update(demonstrations=[*self._state["demonstrations"], line], teach="")
             case Finished():
                 certified = event.status is Status.CERTIFIED
                 cause = Cause.SUCCESS if certified else Cause.JOINT_LIMIT
                 claim = "" if event.verdict is None else f"{event.verdict.claim}; "
-                self._say(
+                self._update(
                     headline=event.status.value,
                     details=f"{claim}{event.reason}",
                     color=OUTCOME_COLORS[cause],
@@ -184,9 +129,62 @@ class LivePage:
 
     def close(self) -> None:
         """Stop serving the page."""
-        self.server.close()
+        self._server.close()
 
-    def _say(self, **changes: Any) -> None:
-        self.meshcat.Flush()
+    def _start_round(self, event: RoundStarted) -> None:
+        self._demonstrations = event.demonstrations
+        listed = self._state["demonstrations"]
+        given = [
+            {"number": i + 1, "color": INK, "words": d.name}
+            for i, d in enumerate(event.demonstrations)
+        ]
+        self._update(
+            headline=describe(event, self._setup.regions),
+            details="",
+            color=INK,
+            teach="",
+            demonstrations=[*listed, *given[len(listed) :]],
+        )
+
+    def _fill_regions(self, event: RegionsEvaluated) -> None:
+        """Fill the regions with the failure rates of a round so far."""
+        if time.monotonic() - self._redrawn < REDRAW_PERIOD:
+            return
+        self._redrawn = time.monotonic()
+        regions = self._setup.regions
+        with np.errstate(invalid="ignore"):
+            rates = event.failures / event.samples
+        if len(rates) == regions.K:
+            self._scene.show_rates(rates, regions, self._demonstrations)
+        worst = int(np.nan_to_num(rates, nan=-1.0).argmax())
+        where = f" in region {worst}" if len(rates) > 1 else ""
+        self._update(
+            details=f"{event.samples.sum():,} instances so far; highest failure rate "
+            f"{np.nan_to_num(rates[worst]):.2%}{where}"
+        )
+
+    def _finish_round(self, event: RoundFinished) -> None:
+        shown = self._scene.show_round(event, event.regions)
+        verdict, number = event.verdict, event.round + 1
+        weakest = verdict.region
+        color = OUTCOME_COLORS[Cause.SUCCESS if verdict.certified else Cause.JOINT_LIMIT]
+        line = {
+            "number": number,
+            "color": color,
+            "words": f"weakest: region {weakest}, {verdict.estimates[weakest]:.2%} fail "
+            f"(at most {verdict.upper[weakest]:.2%}); "
+            f"{len(event.evaluation.region):,} instances",
+        }
+        self._update(
+            headline=f"round {number}: {'certified' if verdict.certified else 'not certified'}",
+            details=f"weakest region {weakest}: {event.regions.name(weakest)}; {verdict.reason}",
+            color=color,
+            map=work_area_map(event, event.regions),
+            map_words=f"after round {number}; {map_words(event, shown)}",
+            rounds=[*self._state["rounds"], line],
+        )
+
+    def _update(self, **changes: Any) -> None:
+        self._meshcat.Flush()
         self._state |= changes
-        self.server.show(self._state)
+        self._server.show(self._state)

@@ -1,60 +1,54 @@
-"""The desk of an interactive teacher: lead the arm in the browser, record, look, accept."""
+"""Where a person gives demonstrations: lead the arm in the browser, record, look, accept."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from drake_screw.acquisition import Event, Finished, RoundFinished, RoundStarted, Suggestion
-from drake_screw.acquisition.interactive import InteractiveTeacher
+from drake_screw.acquisition.interactive_teacher import InteractiveTeacher
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Recording
-from drake_screw.demonstrations.library import JOINTS, OBJECTS
-from drake_screw.errors import RecordingError
 from drake_screw.runs.narration import describe
+from drake_screw.runs.pictures import make_scene
 from drake_screw.typing import Array
-from drake_screw.visualization import Scene
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.lifetime import page_meshcat
+from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.palette import ACCENT
-from drake_screw.web.lesson import PERIOD, DeskLesson
-from drake_screw.web.panel import KEY, body, script_json
-from drake_screw.web.panel_server import PanelServer
+from drake_screw.web.inbox import Inbox
+from drake_screw.web.inspector_panel import KEY
+from drake_screw.web.server import PanelServer
+from drake_screw.web.teaching_session import PERIOD, TeachingSession
 
-SAY = 0.1
+UPDATE_PERIOD = 0.1
 """s. Between states of the panel while the arm moves."""
-LOOK = 1.0
-"""s. Between looks into the watched folder; a file that changed since then is still growing."""
 
 
 def _print(text: str) -> None:
     print(text, flush=True)
 
 
-_Files = tuple[tuple[str, int, int], ...]
-"""Name, size in bytes and time of change in ns of each file of a recording."""
-
-
 class TeachingPage:
-    """Asks for demonstrations in the browser; a `Desk` of an `InteractiveTeacher`.
+    """Asks for demonstrations in the browser, for an `InteractiveTeacher`.
 
     It is a listener of the run, too. The page opens with the first request, unless it is opened
-    before. The person leads the arm by sliders of the hand's pose (differential inverse kinematics
-    keeps the joints within their limits) or of the joints, and records; the recording is cut into
-    screws and planned at once, to be accepted or repeated. Or they drop a recording's folder into
-    the watched folder.
+    before. The person leads the arm by sliders of the end effector's pose (differential inverse
+    kinematics keeps the joints within their limits) or of the joints, and records; the recording is
+    cut into screws and planned at once, to be accepted or repeated. Or they drop a recording's
+    folder into the watched folder.
 
     Args:
         setup: of the run.
         inbox: the watched folder; none if None. What lies there already is not taken, unless it
             changes.
+        host: "localhost", or an address to listen on.
+        port: of the page; any free one if None.
+        announce: called whenever a person is waited for, with the page's address.
 
     Attributes:
-        host, port: of the page, as in `PanelServer`.
-        announce: told whenever a person is waited for, and where.
         url: of the page once it is open.
     """
 
@@ -67,11 +61,10 @@ class TeachingPage:
         port: int | None = None,
         announce: Callable[[str], None] = _print,
     ) -> None:
-        self._setup, self._inbox = setup, inbox
-        self.host, self.port, self.announce = host, port, announce
+        self._setup = setup
+        self._inbox = None if inbox is None else Inbox(inbox)
+        self._host, self._port, self._announce = host, port, announce
         self.url = ""
-        self._seen = dict(self._dropped())
-        self._since: dict[Path, tuple[_Files, float]] = {}
         self._server: PanelServer | None = None
 
     def open(self) -> str:
@@ -84,128 +77,102 @@ class TeachingPage:
         if self._server is not None:
             return self.url
         if self._inbox is not None:
-            try:
-                self._inbox.mkdir(parents=True, exist_ok=True)
-            except OSError as error:
-                raise RecordingError(
-                    f"cannot be watched: {error.strerror}",
-                    remedy="Give another teacher.folder, one that can be made.",
-                    file=self._inbox,
-                ) from error
-        setup = self._setup
-        meshcat = page_meshcat(self.host)
-        name = setup.scenario.name
-        self._scene = Scene(
-            meshcat, setup.robot, setup.table, setup.objects, setup.area, scenario=name
-        )
+            self._inbox.make()
+        setup, meshcat = self._setup, page_meshcat(self._host)
+        self._scene = make_scene(setup, meshcat)
         self._inspector = Inspector(meshcat, setup.workcell, setup.objects)
         key = ((ACCENT, "demonstrate here"), *KEY)
-        panel = body("teach.html", f"const KEY = {script_json(key)};", ("panel.js", "teach.js"))
-        title = f"{name}: teach"
-        self._server = PanelServer(meshcat.port(), panel, title, host=self.host, port=self.port)
+        panel = render("drake_screw.web", "teaching.html.j2", accent=ACCENT, key=key)
+        self._title = f"{setup.scenario.name}: teach"
+        self._server = PanelServer(
+            meshcat.port(), panel, self._title, host=self._host, port=self._port
+        )
         self.url = self._server.url
-        self._idle("the run is starting")
+        self._show_idle("the run is starting")
         return self.url
 
-    def teach(self, suggestion: Suggestion, number: int) -> Recording | None:
-        """See `Desk.teach`; returns when the person has decided."""
+    def ask(self, suggestion: Suggestion, number: int) -> Recording | None:
+        """Ask for a demonstration; returns when the person has decided.
+
+        Args:
+            suggestion: where it is wanted.
+            number: of the demonstration, from 0.
+
+        Returns:
+            The accepted recording; None if there will be none.
+        """
         self.open()
         assert self._server is not None
-        self._invite(number)
+        self._announce_request(number)
         while self._server.message(0.0) is not None:
             pass
-        lesson = DeskLesson(self._setup, self._inspector, suggestion, number)
+        session = TeachingSession(self._setup, self._inspector, suggestion, number)
         self._scene.show_suggestion(suggestion.x_y_yaw)
-        said, looked, moved = 0.0, 0.0, True
-        while not lesson.over:
+        updated, changed = 0.0, True
+        while not session.over:
             message = self._server.message(PERIOD)
             while message is not None:
-                lesson.hear(message)
-                moved = True
+                session.handle(message)
+                changed = True
                 message = self._server.message(0.0)
-            moved |= lesson.step()
+            changed |= session.step()
+            if session.leading and not session.recording:
+                changed |= self._take_dropped(session)
             now = time.monotonic()
-            if now - looked > LOOK and lesson.leading and not lesson.recording_now:
-                looked = now
-                moved |= self._look(lesson)
-            if moved and now - said > SAY:
-                said, moved = now, lesson.recording_now
-                self._pose(lesson.led.q)
-                self._server.show(lesson.state())
+            if changed and now - updated > UPDATE_PERIOD:
+                updated, changed = now, session.recording
+                self._pose_arm(session.guided.q)
+                self._server.show(session.state())
         self._inspector.clear()
         self._scene.clear_suggestion()
-        self._pose(self._setup.workcell.start)
-        given = lesson.accepted is not None
-        self._idle("thank you; the run goes on" if given else "no demonstration there")
-        return lesson.accepted
+        self._pose_arm(self._setup.workcell.start)
+        given = session.accepted is not None
+        self._show_idle("thank you; the run goes on" if given else "no demonstration there")
+        return session.accepted
 
     def __call__(self, event: Event) -> None:
         """Say on the page how the run goes on between two requests."""
         if self._server is not None and isinstance(event, RoundStarted | RoundFinished | Finished):
             over = isinstance(event, Finished)
             words = describe(event, self._setup.regions)
-            self._idle(f"the run has ended, {words}" if over else words)
+            self._show_idle(f"the run has ended, {words}" if over else words)
 
     def close(self) -> None:
         """Stop serving the page."""
         if self._server is not None:
             self._server.close()
 
-    def _idle(self, headline: str) -> None:
+    def _show_idle(self, headline: str) -> None:
         """Show that nobody is asked for anything just now."""
         assert self._server is not None
         self._inspector.meshcat.Flush()
-        blank: dict[str, Any] = {
-            "message": "",
-            "clock": "",
-            "hint": "",
-            "can": [],
-            "leading": False,
-        }
-        title = f"{self._setup.scenario.name}: teach"
-        empty: dict[str, Any] = {"hand": [], "joints": [], "segments": []}
-        self._server.show({"title": title, "headline": headline, **blank, **empty})
+        state: dict[str, Any] = {"title": self._title, "headline": headline, "leading": False}
+        state |= {"message": "", "clock": "", "hint": "", "can": []}
+        state |= {"hand": [], "joints": [], "segments": []}
+        self._server.show(state)
 
-    def _invite(self, number: int) -> None:
-        folder = "" if self._inbox is None else f", or drop a recording's folder into {self._inbox}"
-        self.announce(
+    def _announce_request(self, number: int) -> None:
+        folder = ""
+        if self._inbox is not None:
+            folder = f", or drop a recording's folder into {self._inbox.folder}"
+        self._announce(
             f"waiting for demonstration {number + 1}: open {self.url} in a browser{folder}"
         )
 
-    def _pose(self, q: Array) -> None:
+    def _take_dropped(self, session: TeachingSession) -> bool:
+        """Offer what was dropped into the watched folder; returns whether anything was."""
+        folder = None if self._inbox is None else self._inbox.take()
+        if folder is None:
+            return False
+        words = session.offer_folder(folder)
+        todo = "correct it, or drop another" if session.leading else "accept or repeat it"
+        self._announce(f"{words}\n{todo}: {self.url}")
+        return True
+
+    def _pose_arm(self, q: Array) -> None:
         linkage = self._inspector.linkage
         for name, X in zip(linkage.names, linkage.poses(q[None])[0], strict=True):
             self._inspector.meshcat.SetTransform(f"/workcell/{name}", X)
-
-    def _look(self, lesson: DeskLesson) -> bool:
-        """Read what was dropped into the watched folder; a folder still growing has to wait."""
-        now = time.monotonic()
-        for folder, files in self._dropped():
-            if self._since.get(folder, ((), 0.0))[0] != files:
-                self._since[folder] = files, now
-            patience = LOOK if len(files) == 2 else 5.0 * LOOK
-            if self._seen.get(folder) != files and now - self._since[folder][1] > patience:
-                self._seen[folder] = files
-                words = lesson.take(folder)
-                todo = "mend it, or drop another" if lesson.leading else "accept or repeat it"
-                self.announce(f"{words}\n{todo}: {self.url}")
-                return True
-        return False
-
-    def _dropped(self) -> list[tuple[Path, _Files]]:
-        """Recordings in the watched folder, and which files they have."""
-        if self._inbox is None or not self._inbox.is_dir():
-            return []
-        found = []
-        for folder in sorted(self._inbox.iterdir()):
-            files = []
-            for name in (JOINTS, OBJECTS):
-                with suppress(OSError):
-                    there = (folder / name).stat()
-                    files.append((name, there.st_size, there.st_mtime_ns))
-            if files:
-                found.append((folder, tuple(files)))
-        return found
 
 
 def interactive_teacher(setup: Setup) -> InteractiveTeacher:

@@ -7,6 +7,7 @@ from drake_screw.acquisition import (
     DemonstrationAdded,
     DemonstrationRequested,
     Finished,
+    Lesson,
     RoundFinished,
     RoundStarted,
     Status,
@@ -21,7 +22,7 @@ def run(disks, teacher, **options):
     return list(acquire(disks.evaluate, teacher, learn, disks.regions, **options))
 
 
-def test_asks_until_every_region_is_covered(disks):
+def test_asks_until_every_region_is_covered(disks) -> None:
     events = run(disks, Obliging())
     end = events[-1]
     assert isinstance(end, Finished)
@@ -33,7 +34,7 @@ def test_asks_until_every_region_is_covered(disks):
     assert [len(r.demonstrations) for r in rounds] == list(range(1, len(rounds) + 1))
 
 
-def test_the_order_of_events(disks):
+def test_the_order_of_events(disks) -> None:
     kinds = [type(e) for e in run(disks, Obliging())]
     assert kinds[:3] == [DemonstrationRequested, DemonstrationAdded, RoundStarted]
     body, end = kinds[2:-1], kinds[-1]
@@ -43,7 +44,7 @@ def test_the_order_of_events(disks):
     assert end is Finished
 
 
-def test_suggestions_fail_lie_in_the_weakest_region_and_failed_earliest(disks):
+def test_suggestions_fail_lie_in_the_weakest_region_and_failed_earliest(disks) -> None:
     for event in run(disks, Obliging()):
         if not isinstance(event, RoundFinished) or event.suggestion is None:
             continue
@@ -56,7 +57,7 @@ def test_suggestions_fail_lie_in_the_weakest_region_and_failed_earliest(disks):
         assert event.suggestion.segment == seen.outcomes[mine].furthest_segment.min()
 
 
-def test_a_budget_ends_the_run_with_what_was_shown():
+def test_a_budget_ends_the_run_with_what_was_shown() -> None:
     disks = Disks(radius=0.2)
     end = run(disks, Obliging(), budget=3)[-1]
     assert end.status is Status.INSUFFICIENT
@@ -65,7 +66,7 @@ def test_a_budget_ends_the_run_with_what_was_shown():
     assert end.verdict.coverage == max(0.0, 1 - 0.2 - end.verdict.estimates.max())
 
 
-def test_a_teacher_without_an_answer_ends_the_run():
+def test_a_teacher_without_an_answer_ends_the_run() -> None:
     disks, teacher = Disks(radius=0.2), Obliging(most=2)
     end = run(disks, teacher)[-1]
     assert end.status is Status.INSUFFICIENT
@@ -75,21 +76,21 @@ def test_a_teacher_without_an_answer_ends_the_run():
     assert len({tuple(s.x_y_yaw[0]) for s in refused}) == 3
 
 
-def test_a_teacher_who_cannot_begin_ends_the_run_before_any_round(disks):
+def test_a_teacher_who_cannot_begin_ends_the_run_before_any_round(disks) -> None:
     events = run(disks, Obliging(most=0))
     assert not any(isinstance(e, RoundStarted) for e in events)
     assert events[-1].status is Status.INSUFFICIENT
     assert events[-1].verdict is None
 
 
-def test_initial_recordings_can_be_given(disks):
+def test_initial_recordings_can_be_given(disks) -> None:
     given = [recording_at("a", 0.2, 0.2), recording_at("b", 0.8, 0.8)]
     events = run(disks, Obliging(), initial=given)
     assert isinstance(events[0], RoundStarted)
     assert [d.name for d in events[0].demonstrations] == ["a", "b"]
 
 
-def test_a_run_can_begin_with_nothing(disks):
+def test_a_run_can_begin_with_nothing(disks) -> None:
     first = next(e for e in run(disks, Obliging(), initial=0) if isinstance(e, RoundFinished))
     assert (first.verdict.estimates == 1.0).all()
     assert first.suggestion.segment is None
@@ -106,20 +107,20 @@ def trace(events):
     ]
 
 
-def test_a_run_is_a_function_of_its_seed(disks):
+def test_a_run_is_a_function_of_its_seed(disks) -> None:
     again = Disks(radius=0.45)
     assert trace(run(disks, Obliging())) == trace(run(again, Obliging()))
     other = Disks(radius=0.45, seed=1)
     assert trace(run(other, Obliging(), seed=1)) != trace(run(again, Obliging()))
 
 
-def test_every_round_has_fresh_instances(disks):
+def test_every_round_has_fresh_instances(disks) -> None:
     rounds = [e.evaluation.x_y_yaw for e in run(disks, Obliging()) if isinstance(e, RoundFinished)]
     assert len(rounds) >= 2
     assert not np.intersect1d(rounds[0].ravel(), rounds[1][..., :2].ravel()).size > 1
 
 
-def test_attempts_count_the_rounds_that_could_have_passed():
+def test_attempts_count_the_rounds_that_could_have_passed() -> None:
     disks = Disks(radius=0.2)
     disks.strategy = make_strategy("eprocess", Goal(0.7, 0.2, 0.1))
     events = run(disks, Obliging(), budget=4)
@@ -129,7 +130,7 @@ def test_attempts_count_the_rounds_that_could_have_passed():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_teachers_get_random_numbers_of_their_own(seed):
+def test_teachers_get_random_numbers_of_their_own(seed) -> None:
     draws = []
 
     class Drawing(Obliging):
@@ -139,3 +140,19 @@ def test_teachers_get_random_numbers_of_their_own(seed):
 
     run(Disks(radius=0.3), Drawing(), seed=seed, budget=5)
     assert len(set(draws)) == len(draws)
+
+
+def test_a_second_place_is_asked_for_with_other_random_numbers() -> None:
+    """A teacher that fails by bad luck must not fail by the same luck again."""
+    draws: dict[int, list[float]] = {}
+
+    class Unlucky(Obliging):
+        def demonstrate(self, suggestion, *, number, used, rng):
+            draws.setdefault(number, []).append(rng.random())
+            if len(draws[number]) < 3 and number > 0:
+                return Lesson(None, "missed")
+            return super().demonstrate(suggestion, number=number, used=used, rng=rng)
+
+    run(Disks(radius=0.3), Unlucky(), budget=3)
+    assert [len(draws[number]) for number in sorted(draws)] == [1, 3, 3]
+    assert len({value for values in draws.values() for value in values}) == 7

@@ -7,8 +7,8 @@ import pytest
 
 from drake_screw.acquisition.events import Suggestion
 from drake_screw.acquisition.simulated import MOTIONS, SimulatedTeacher
-from drake_screw.acquisition.simulated.human import RATE, minimum_jerk, swayed, timed
-from drake_screw.acquisition.simulated.leading import lead
+from drake_screw.acquisition.simulated.candidate_paths import follow_key_poses
+from drake_screw.acquisition.simulated.human import RATE, minimum_jerk, timed, with_hand_noise
 from drake_screw.acquisition.simulated.motions import hand_poses, usual_azimuth
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import (
@@ -237,16 +237,16 @@ def test_an_unknown_motion_is_refused(workcell: Workcell) -> None:
 def test_leading_follows_the_screws_with_the_least_motion(workcell: Workcell) -> None:
     chain, start = workcell.arm.screw_chain(), workcell.start
     goal = chain.pose(start + np.array([0.2, 0.1, -0.1, 0.2, 0.1, 0.2, -0.3]))
-    led = lead(chain, start, np.stack([goal, goal])[None])
-    first = led.segment == 0
-    hand = chain.pose(led.q[0, first])
+    paths = follow_key_poses(chain, start, np.stack([goal, goal])[None])
+    first = paths.segment == 0
+    hand = chain.pose(paths.q[0, first])
     wanted = sclerp(hand[0], goal, np.linspace(0.0, 1.0, len(hand)))
-    assert led.arrived.all()
+    assert paths.arrived.all()
     assert translation_distance(hand, wanted).max() < 1e-3
     assert rotation_angle(hand, wanted).max() < 3e-3
-    assert np.abs(led.q[0, ~first] - led.q[0, first][-1]).max() < 2e-3
-    step = led.q[0, 1] - led.q[0, 0]
-    J = chain.jacobian(led.q[0, 0])
+    assert np.abs(paths.q[0, ~first] - paths.q[0, first][-1]).max() < 2e-3
+    step = paths.q[0, 1] - paths.q[0, 0]
+    J = chain.jacobian(paths.q[0, 0])
     assert np.linalg.norm(step - np.linalg.pinv(J) @ (J @ step)) < 0.02 * np.linalg.norm(step)
 
 
@@ -287,10 +287,10 @@ def test_timing_starts_and_stops_at_every_key_pose() -> None:
     np.testing.assert_allclose(moved[[0, -1]], q[[0, -1]], atol=1e-12)
 
 
-def test_sway_leaves_the_start_and_moves_the_hand_by_millimetres(workcell: Workcell) -> None:
+def test_hand_noise_leaves_the_start_and_moves_the_hand_by_millimetres(workcell: Workcell) -> None:
     chain = workcell.arm.screw_chain()
     q = np.tile(workcell.start, (1200, 1))
-    moved = swayed(chain, q, np.random.default_rng(0))
+    moved = with_hand_noise(chain, q, np.random.default_rng(0))
     np.testing.assert_array_equal(moved[0], q[0])
     away = translation_distance(chain.pose(moved), chain.pose(q))
     assert 0.001 < away[100:].mean() < 0.008

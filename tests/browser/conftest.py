@@ -55,7 +55,7 @@ class Browser:
         return self.ask("return document.querySelector(arguments[0])?.textContent ?? ''", selector)
 
     def click(self, selector: str) -> None:
-        """Click an element, found anew where a new state of the panel has just replaced it."""
+        """Click an element, found again where a new state of the panel has just replaced it."""
         from selenium.common.exceptions import StaleElementReferenceException
 
         def clicked() -> bool:
@@ -87,7 +87,7 @@ class Browser:
         return self.until(twice)[0]
 
     def slide(self, selector: str, value: float) -> None:
-        """Move a slider as a hand would, and tell the page of it."""
+        """Move a slider as a hand would, with the event that goes with it."""
         self.ask(
             "const s = document.querySelector(arguments[0]); s.value = arguments[1];"
             "s.dispatchEvent(new Event('input'))",

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from drake_screw.runs.inspection import open_inspection
+from drake_screw.runs.run import open_run
 from drake_screw.screws import sclerp_position
 from drake_screw.visualization.attempt import DONE, FAILED
-from drake_screw.web.charts import STATUS_COLORS
-from drake_screw.web.choice import choose
+from drake_screw.visualization.palette import STATUS_COLORS
 from drake_screw.web.inspector_page import save_page
 from drake_screw.web.report_page import write_report
+from drake_screw.web.selection import select
 from tests.browser.conftest import Browser, program
 
 HAND = "workcell/baxter/left_hand"
@@ -22,24 +22,24 @@ SERVE = """
 import sys
 from pathlib import Path
 from rich.console import Console
-from drake_screw.web.inspector_page import inspect
-inspect(Path(sys.argv[1]), Console(width=200), round=1)
+from drake_screw.commands.inspect_console import inspect_run
+inspect_run(Path(sys.argv[1]), Console(width=200), round=1)
 """
 
 
 @pytest.fixture(scope="module")
-def inspection(finished_run):
-    return open_inspection(finished_run)
+def reader(finished_run):
+    return open_run(finished_run).reader
 
 
 @pytest.fixture(scope="module")
-def page(inspection, tmp_path_factory) -> Path:
+def page(reader, tmp_path_factory) -> Path:
     """The second round's suggested instance, with both demonstrations."""
-    return save_page(inspection, choose(inspection, 1), tmp_path_factory.mktemp("page") / "p.html")
+    return save_page(reader, select(reader, 1), tmp_path_factory.mktemp("page") / "p.html")
 
 
 @pytest.fixture
-def opened(browser, page, inspection) -> None:
+def opened(browser, page, reader) -> None:
     """The page as it opens; it is loaded once, and put back for each test."""
     if browser.driver.current_url != page.as_uri():
         browser.open(page.as_uri())
@@ -47,7 +47,7 @@ def opened(browser, page, inspection) -> None:
     for box, checked in {"arm": 1, "ghost": 1, "dots": 0}.items():
         toggle(browser, f"#{box}-shown", bool(checked))
     toggle(browser, "#all-axes", False)
-    best = choose(inspection, 1).demonstration + 1
+    best = select(reader, 1).demonstration + 1
     browser.click(f"#demonstrations li:nth-child({best})")
 
 
@@ -68,9 +68,9 @@ def near(screen: np.ndarray, at: tuple[int, int], color: str, *, reach: int = 5)
     return bool(((agree > 0.93) & (size > 0.12)).any())
 
 
-def test_screw_segments_have_their_colours_where_they_are(browser, opened, inspection) -> None:
-    choice = choose(inspection, 1)
-    tried = inspection.attempt(1, choice.instance, choice.demonstration)
+def test_screw_segments_have_their_colours_where_they_are(browser, opened, reader) -> None:
+    selection = select(reader, 1)
+    tried = reader.attempt(1, selection.instance, selection.demonstration)
     for box in ("#arm-shown", "#ghost-shown"):
         browser.click(box)
     screens = browser.screen()
@@ -87,9 +87,9 @@ def test_screw_segments_have_their_colours_where_they_are(browser, opened, inspe
     assert FAILED in tried.status
 
 
-def test_the_ghost_stands_where_the_plan_failed(browser, opened, inspection) -> None:
-    choice = choose(inspection, 1)
-    ghost = f"attempts/{choice.demonstration + 1:02d}/ghost"
+def test_the_ghost_stands_where_the_plan_failed(browser, opened, reader) -> None:
+    selection = select(reader, 1)
+    ghost = f"attempts/{selection.demonstration + 1:02d}/ghost"
     assert browser.node(ghost)["seen"]
     last = int(browser.ask("return document.querySelector('#slider').max"))
     browser.slide("#slider", last)
@@ -99,9 +99,9 @@ def test_the_ghost_stands_where_the_plan_failed(browser, opened, inspection) -> 
     assert not browser.node(ghost)["seen"]
 
 
-def test_the_slider_moves_the_arm_and_the_table(browser, opened, inspection) -> None:
-    choice = choose(inspection, 1)
-    tried = inspection.attempt(1, choice.instance, choice.demonstration)
+def test_the_slider_moves_the_arm_and_the_table(browser, opened, reader) -> None:
+    selection = select(reader, 1)
+    tried = reader.attempt(1, selection.instance, selection.demonstration)
     places, margins = [], []
     for index in (0, 30, 60):
         browser.slide("#slider", index)
@@ -132,10 +132,10 @@ def test_a_page_shows_each_demonstration_by_itself(browser, opened) -> None:
 
 
 def test_the_screws_at_the_slider_and_at_the_failure_show_their_axes(
-    browser, opened, inspection
+    browser, opened, reader
 ) -> None:
-    choice = choose(inspection, 1)
-    tried = inspection.attempt(1, choice.instance, choice.demonstration)
+    selection = select(reader, 1)
+    tried = reader.attempt(1, selection.instance, selection.demonstration)
     axes = [f"attempts/{tried.number + 1:02d}/axes/{i:02d}" for i in range(1, 6)]
 
     def shown() -> set[int]:
@@ -148,7 +148,7 @@ def test_the_screws_at_the_slider_and_at_the_failure_show_their_axes(
     assert shown() == set(range(5))
 
 
-def test_the_live_page(browser, finished_run, inspection) -> None:
+def test_the_live_page(browser, finished_run, reader) -> None:
     with program(SERVE, finished_run) as (url, _):
         browser.open(url)
         browser.until(lambda: browser.text("#headline"))
@@ -180,8 +180,8 @@ def test_the_live_page(browser, finished_run, inspection) -> None:
         assert browser.complaints() == []
 
 
-def test_the_report_stands_alone(browser, inspection, tmp_path) -> None:
-    report = write_report(inspection, tmp_path)
+def test_the_report_stands_alone(browser, reader, tmp_path) -> None:
+    report = write_report(reader, tmp_path)
     browser.open(report.as_uri())
     pictures = "return [...document.images].map((i) => i.naturalWidth)"
     assert len(browser.ask(pictures)) == 3

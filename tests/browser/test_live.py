@@ -14,7 +14,7 @@ TEACH = """
 import sys
 import numpy as np
 from drake_screw.acquisition import Suggestion
-from drake_screw.acquisition.interactive import InteractiveTeacher
+from drake_screw.acquisition.interactive_teacher import InteractiveTeacher
 from drake_screw.assembly.setup import Setup
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.web.teaching_page import TeachingPage

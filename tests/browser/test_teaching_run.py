@@ -21,7 +21,6 @@ import pytest
 from drake_screw.acquisition import Suggestion
 from drake_screw.acquisition.simulated import SimulatedTeacher
 from drake_screw.demonstrations import write_recording
-from drake_screw.runs.inspection import open_inspection
 from drake_screw.runs.run import open_run
 from tests.browser.conftest import Browser
 
@@ -134,11 +133,11 @@ def test_a_run_goes_on_with_what_is_given_by_clicks_alone(browser, tmp_path) -> 
     assert [r["demonstrations"] for r in told["rounds"]] == [1, 2]
     assert [d["name"] for d in told["demonstrations"]] == ["demo_01", "demo_02"]
     assert all("led by hand, 0 cm" in d["remark"] for d in told["demonstrations"])
-    inspection = open_inspection(run)
-    stored, _ = inspection.run.stored(0)
+    reader = open_run(run).reader
+    stored = reader.recording(0)
     assert np.allclose(stored.q[-1], first, atol=2e-3)
     assert np.abs(stored.q[-1] - stored.q[0]).max() > 0.1
-    assert len(inspection.event(1).demonstrations) == 2
+    assert len(reader.event(1).demonstrations) == 2
     again = subprocess.run(
         [sys.executable, "-m", "drake_screw.cli", "report", run],
         capture_output=True, text=True, timeout=LEAST, check=True,
@@ -200,7 +199,7 @@ def test_a_run_left_while_it_waits_is_carried_on_with_a_dropped_folder(browser, 
 def drop(run: Path, aside: Path, inbox: Path) -> Path:
     """Let the simulated teacher show the wanted demonstration, and move it into the inbox."""
     setup = open_run(run).setup
-    suggestion = open_inspection(run).event(0).suggestion
+    suggestion = open_run(run).reader.event(0).suggestion
     assert suggestion is not None
     teacher = SimulatedTeacher(setup.workcell, setup.area, "pouring")
     place = Suggestion(suggestion.region, suggestion.x_y_yaw)

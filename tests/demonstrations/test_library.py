@@ -63,8 +63,11 @@ def test_reads_what_is_there(tmp_path: Path) -> None:
         lambda text: text.rstrip("\n"),
         lambda text: text.replace(",", " , "),
         lambda text: "\ufeff" + text.replace("\n", "\r\n") + "\r\n",
+        lambda text: "\n".join(
+            ", ".join(f'"{cell}"' for cell in line.split(",")) for line in text.split()
+        ),
     ],
-    ids=["BOM", "CRLF", "blank lines", "no last newline", "spaces", "BOM and CRLF"],
+    ids=["BOM", "CRLF", "blank lines", "no last newline", "spaces", "BOM and CRLF", "quotes"],
 )
 def test_ways_of_writing_a_csv(tmp_path: Path, change: object) -> None:
     plain = read(write(tmp_path / "a"))
@@ -78,6 +81,21 @@ def test_columns_are_found_by_name_whatever_their_order(tmp_path: Path) -> None:
     text = "grip,elbow,time,other,shoulder\n9,0.5,1.0,x,0.1\n9,0.6,1.1,y,0.2\n"
     recording = read(write(tmp_path / "demo", text))
     np.testing.assert_array_equal(recording.q, [[0.1, 0.5], [0.2, 0.6]])
+
+
+def test_names_with_commas_and_quotes_are_written_and_read_back(tmp_path: Path) -> None:
+    names = ("shoulder, left", 'the "elbow"')
+    t, q = np.array([0.0, 0.1]), np.array([[0.0, 0.0], [0.1, 0.2]])
+    write_recording(Recording("demo", names, t, q, np.eye(4)[None]), tmp_path)
+    recording = read_recording(tmp_path, names, LOWER, UPPER)
+    np.testing.assert_array_equal(recording.q, q)
+
+
+def test_folders_may_be_given_as_text(tmp_path: Path) -> None:
+    recording = read(write(tmp_path / "library" / "demo_01"))
+    write_recording(recording, str(tmp_path / "library" / "demo_02"))
+    library = str(tmp_path / "library")
+    assert [r.name for r in read_library(library, NAMES, LOWER, UPPER)] == ["demo_01", "demo_02"]
 
 
 def test_missing_column_names_the_nearest(tmp_path: Path) -> None:
@@ -109,6 +127,8 @@ def test_no_time_column(tmp_path: Path) -> None:
         (JOINTS + "0.13,0.3\n", "2 cells where the header has 3", 5),
         (JOINTS + "0.13,0.3,0.6,\n", "4 cells where the header has 3", 5),
         (JOINTS + "0.13,0.3,\n", "not a number: ''", 5),
+        (JOINTS + ",,\n", "not a number: ''", 5),
+        (JOINTS + '0.13,"0.3,0.6\n', "not CSV: unexpected end of data", 5),
         (JOINTS + "\n\n0.13,abc,0.6\n", "not a number: 'abc'", 7),
         (JOINTS + "\n0.13,nan,0.6\n", "not a finite number: shoulder", 6),
         (JOINTS + "0.115,0.3,0.6\n", "time runs backwards", 5),

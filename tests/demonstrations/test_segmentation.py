@@ -176,6 +176,17 @@ def test_lingering_ends_a_segment() -> None:
     assert len(segment(lingering, DEFAULT)) > 2
 
 
+def test_going_back_a_little_is_tremor_and_ends_no_segment() -> None:
+    """The hand trembles aside, and by 1.6 mm back as seen along the screw."""
+    x_y = [(0, 0), (12, 0), (11, 8), (30, -2), (45, 0), (60, 0), (75, 0), (90, 0)]
+    p = np.array([(x / 1000, y / 1000, 0.0) for x, y in x_y])
+    along = p @ p[3] / np.linalg.norm(p[3])
+    assert along[2] < along[1] - 1e-3
+    path = pose(np.eye(3), p)
+    assert fits_screw(path, np.arange(1, len(p)), DEFAULT).all()
+    np.testing.assert_array_equal(segment(path, DEFAULT), [0, len(p) - 1])
+
+
 @pytest.mark.parametrize("m", [1, 2, 3])
 def test_short_paths(m: int) -> None:
     path = straight((0.0, 0.0, 0.0), (0.0, 0.0, 0.5))[:m]

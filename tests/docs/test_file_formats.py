@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw.commands.evaluate import evaluate
-from drake_screw.commands.export import export
 from drake_screw.execution.trials import trials_csv
 from drake_screw.planning import Cause
+from drake_screw.runs.codec import plain
+from drake_screw.runs.outcome_table import tabulate_outcomes
 from drake_screw.runs.run import Run, new_run
+from drake_screw.runs.trajectory import write_trajectory
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.studies.study import RUNS, STUDY, SUMMARY, new_study
 
@@ -53,7 +54,7 @@ def test_every_key_of_run_json(grid: Run) -> None:
 
 def test_the_example_of_a_demonstration_has_the_keys(grid: Run) -> None:
     example = json.loads(re.findall(r"```json\n(.*?)```", section("run.json"), re.DOTALL)[0])
-    assert example.keys() == grid.directory.record["demonstrations"][0].keys()
+    assert example.keys() == plain(grid.directory.record)["demonstrations"][0].keys()
 
 
 def test_every_file_of_a_run(grid: Run) -> None:
@@ -111,7 +112,7 @@ def test_outcomes_and_recordings(grid: Run, tmp_path: Path) -> None:
     instances = "\n".join(section("Instances").split("```")[1].strip().splitlines()) + "\n"
     (tmp_path / "places.csv").write_text(instances)
     kept, output = grid.directory.path / "demonstrations", tmp_path / "out.csv"
-    evaluate(grid.setup.scenario, kept, tmp_path / "places.csv", output)
+    tabulate_outcomes(grid.setup.scenario, kept, tmp_path / "places.csv", output)
     example = section("Outcomes").split("```")[1].strip().splitlines()
     first_column = [",".join(line.split(",")[:3]) for line in example]
     assert output.read_text().splitlines() == first_column
@@ -130,12 +131,12 @@ def test_columns_of_executions(grid: Run) -> None:
 
 def test_exported_trajectories(grid: Run, tmp_path: Path) -> None:
     text = section("Exported trajectories")
-    export(grid.directory.path, (0.9, 0.3), "npz", tmp_path / "plan.npz")
+    write_trajectory(grid.directory.path, (0.9, 0.3), "npz", tmp_path / "plan.npz")
     assert real_arrays(tmp_path / "plan.npz") == stated_arrays(text)
-    export(grid.directory.path, (0.9, 0.3), "ros-trajectory", tmp_path / "plan.yaml")
+    write_trajectory(grid.directory.path, (0.9, 0.3), "ros-trajectory", tmp_path / "plan.yaml")
     example = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0]
     assert (tmp_path / "plan.yaml").read_text().startswith(example)
-    export(grid.directory.path, (0.9, 0.3), "baxter-csv", tmp_path / "plan.csv")
+    write_trajectory(grid.directory.path, (0.9, 0.3), "baxter-csv", tmp_path / "plan.csv")
     shown = first_line_of_block(text, "time,").removesuffix("...")
     assert (tmp_path / "plan.csv").read_text().startswith(shown)
 

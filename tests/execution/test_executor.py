@@ -12,7 +12,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import Context
 
 from drake_screw.execution import Phase, ScrewPlanExecutor, TimedPlan, Tolerances
-from drake_screw.execution.checks import apart
+from drake_screw.execution.monitoring import apart
 from drake_screw.screws import exp, pose
 from tests.execution.conftest import START
 
@@ -71,7 +71,7 @@ def shifted(timed: TimedPlan, p: tuple[float, float, float]) -> TimedPlan:
     return TimedPlan((first, replace(last, X_WB=X_WB)))
 
 
-def test_without_a_plan_it_is_idle_and_holds_still(bench):
+def test_without_a_plan_it_is_idle_and_holds_still(bench) -> None:
     idle = bench()
     for _ in idle.steps(0.1):
         pass
@@ -82,7 +82,7 @@ def test_without_a_plan_it_is_idle_and_holds_still(bench):
     assert idle.finish(0.1).phase is Phase.IDLE
 
 
-def test_it_leads_the_hand_along_the_screws(bench, arm, timed):
+def test_it_leads_the_hand_along_the_screws(bench, arm, timed) -> None:
     run = bench()
     run.give(timed)
     seen, progress = [], []
@@ -108,7 +108,7 @@ def test_it_leads_the_hand_along_the_screws(bench, arm, timed):
     assert turned < 1e-4
 
 
-def test_desired_positions_advance_at_the_desired_velocity(bench, timed):
+def test_desired_positions_advance_at_the_desired_velocity(bench, timed) -> None:
     run = bench()
     run.give(timed)
     for _ in run.steps(0.3):
@@ -120,7 +120,7 @@ def test_desired_positions_advance_at_the_desired_velocity(bench, timed):
     assert np.abs(before[7:]).max() > 0.05
 
 
-def test_it_is_drawn_to_the_planned_joint_path(bench, arm, timed):
+def test_it_is_drawn_to_the_planned_joint_path(bench, arm, timed) -> None:
     """Begun a little off in the motion the hand leaves free, it comes back to the plan."""
     J = arm.jacobian(np.array(START))
     free = np.linalg.svd(J)[2][-1]
@@ -134,7 +134,7 @@ def test_it_is_drawn_to_the_planned_joint_path(bench, arm, timed):
     np.testing.assert_allclose(run.get("desired_state")[:7], last.q[-1], atol=3e-3)
 
 
-def test_an_empty_plan_fails(bench):
+def test_an_empty_plan_fails(bench) -> None:
     run = bench()
     run.give(TimedPlan(()))
     status = run.finish()
@@ -143,7 +143,7 @@ def test_an_empty_plan_fails(bench):
     assert "empty" in status.reason
 
 
-def test_a_plan_that_leaves_the_limits_fails_before_it_moves(bench, arm, timed):
+def test_a_plan_that_leaves_the_limits_fails_before_it_moves(bench, arm, timed) -> None:
     first, last = timed.segments
     q = last.q.copy()
     q[-1, 3] = arm.upper[3] + 0.2
@@ -157,7 +157,7 @@ def test_a_plan_that_leaves_the_limits_fails_before_it_moves(bench, arm, timed):
     np.testing.assert_allclose(run.get("desired_state")[:7], START)
 
 
-def test_a_plan_with_a_position_that_is_no_number_fails(bench, timed):
+def test_a_plan_with_a_position_that_is_no_number_fails(bench, timed) -> None:
     first, last = timed.segments
     q = first.q.copy()
     q[3, 0] = np.nan
@@ -166,7 +166,7 @@ def test_a_plan_with_a_position_that_is_no_number_fails(bench, timed):
     assert run.finish().phase is Phase.FAILED
 
 
-def test_a_plan_that_is_too_fast_fails_before_it_moves(bench, timed):
+def test_a_plan_that_is_too_fast_fails_before_it_moves(bench, timed) -> None:
     first, last = timed.segments
     run = bench()
     run.give(TimedPlan((replace(first, v=100.0 * first.v), last)))
@@ -175,7 +175,7 @@ def test_a_plan_that_is_too_fast_fails_before_it_moves(bench, timed):
     assert "velocity limit" in status.reason
 
 
-def test_a_start_far_from_the_plans_fails(bench, timed):
+def test_a_start_far_from_the_plans_fails(bench, timed) -> None:
     run = bench(START + 0.3 * np.eye(7)[1])
     run.give(timed)
     status = run.finish()
@@ -184,7 +184,7 @@ def test_a_start_far_from_the_plans_fails(bench, timed):
     np.testing.assert_allclose(run.get("desired_state")[7:], 0.0)
 
 
-def test_a_set_point_out_of_reach_fails_in_its_segment(bench, timed):
+def test_a_set_point_out_of_reach_fails_in_its_segment(bench, timed) -> None:
     run = bench()
     run.give(shifted(timed, (0.0, 0.0, 2.0)))
     status = run.finish()
@@ -195,7 +195,7 @@ def test_a_set_point_out_of_reach_fails_in_its_segment(bench, timed):
     assert (run.executor.arm.margin(q) >= -1e-9).all()
 
 
-def test_it_keeps_the_velocity_limits_even_then(bench, arm, timed):
+def test_it_keeps_the_velocity_limits_even_then(bench, arm, timed) -> None:
     run = bench()
     run.give(shifted(timed, (0.3, 0.3, 0.0)))
     for _ in run.steps(timed.duration):
@@ -203,7 +203,7 @@ def test_it_keeps_the_velocity_limits_even_then(bench, arm, timed):
         assert (np.abs(v) <= arm.velocity_limits * (1 + 1e-6)).all()
 
 
-def test_an_arm_that_does_not_follow_is_blocked(bench, timed):
+def test_an_arm_that_does_not_follow_is_blocked(bench, timed) -> None:
     run = bench()
     stuck = np.concatenate([START, np.zeros(7)])
     run.held = lambda state: stuck
@@ -214,7 +214,7 @@ def test_an_arm_that_does_not_follow_is_blocked(bench, timed):
     np.testing.assert_allclose(run.get("desired_state"), stuck)
 
 
-def test_a_hand_that_does_not_arrive_fails(bench, timed):
+def test_a_hand_that_does_not_arrive_fails(bench, timed) -> None:
     run = bench(tolerances=Tolerances(settling=0.1))
     run.held = lambda state: state + 0.01 * np.eye(14)[0]
     run.give(timed)
@@ -223,7 +223,7 @@ def test_a_hand_that_does_not_arrive_fails(bench, timed):
     assert "off the end" in status.reason
 
 
-def test_another_plan_begins_after_one_has_ended(bench, arm, timed):
+def test_another_plan_begins_after_one_has_ended(bench, arm, timed) -> None:
     run = bench()
     run.give(TimedPlan(()))
     assert run.finish().phase is Phase.FAILED
@@ -241,7 +241,7 @@ def test_another_plan_begins_after_one_has_ended(bench, arm, timed):
     assert far < 2e-4
 
 
-def test_taking_the_plan_away_stops_the_arm(bench, timed):
+def test_taking_the_plan_away_stops_the_arm(bench, timed) -> None:
     run = bench()
     run.give(timed)
     for _ in run.steps(0.3):
@@ -253,7 +253,7 @@ def test_taking_the_plan_away_stops_the_arm(bench, timed):
     np.testing.assert_array_equal(run.get("desired_state")[7:], 0.0)
 
 
-def test_the_ports_are_named_as_documented(arm):
+def test_the_ports_are_named_as_documented(arm) -> None:
     executor = ScrewPlanExecutor(arm)
     inputs = [executor.get_input_port(i).get_name() for i in range(executor.num_input_ports())]
     outputs = [executor.get_output_port(i).get_name() for i in range(executor.num_output_ports())]
@@ -264,7 +264,7 @@ def test_the_ports_are_named_as_documented(arm):
     assert executor.HasAnyDirectFeedthrough() is False
 
 
-def test_statuses_read_well(bench, timed):
+def test_statuses_read_well(bench, timed) -> None:
     run = bench()
     assert str(run.get("status")) == "idle"
     run.give(timed)
@@ -273,7 +273,7 @@ def test_statuses_read_well(bench, timed):
     assert str(run.get("status")) == "running in segment 1"
 
 
-def test_apart_agrees_with_the_screws_library():
+def test_apart_agrees_with_the_screws_library() -> None:
     from drake_screw.screws import rotation_angle, translation_distance
 
     rng = np.random.default_rng(0)

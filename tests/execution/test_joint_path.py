@@ -23,7 +23,7 @@ def context(source, arm, timed):
     return context
 
 
-def test_it_plays_the_path(source, context, timed):
+def test_it_plays_the_path(source, context, timed) -> None:
     for t in np.linspace(0.0, timed.duration, 9):
         context.SetTime(t)
         point = timed.at(t)
@@ -32,7 +32,7 @@ def test_it_plays_the_path(source, context, timed):
         assert source.GetOutputPort("progress").Eval(context) == [t / timed.duration]
 
 
-def test_it_is_done_when_the_measured_hand_is(source, context, timed):
+def test_it_is_done_when_the_measured_hand_is(source, context, timed) -> None:
     status = source.GetOutputPort("status")
     context.SetTime(0.1)
     assert status.Eval(context).phase is Phase.RUNNING
@@ -40,7 +40,7 @@ def test_it_is_done_when_the_measured_hand_is(source, context, timed):
     assert status.Eval(context).phase is Phase.DONE
 
 
-def test_a_hand_elsewhere_fails_after_settling(source, context, timed):
+def test_a_hand_elsewhere_fails_after_settling(source, context, timed) -> None:
     off = np.concatenate([timed.segments[0].q[0], np.zeros(7)])
     source.GetInputPort("measured_state").FixValue(context, off)
     status = source.GetOutputPort("status")
@@ -51,7 +51,7 @@ def test_a_hand_elsewhere_fails_after_settling(source, context, timed):
 
 
 @pytest.mark.parametrize("nothing", [None, TimedPlan(())])
-def test_without_a_plan_it_rests(source, context, arm, nothing):
+def test_without_a_plan_it_rests(source, context, arm, nothing) -> None:
     source.GetInputPort("plan").FixValue(context, Value[object](nothing))
     desired = source.GetOutputPort("desired_state").Eval(context)
     np.testing.assert_allclose(desired, [*(arm.lower + arm.upper) / 2, *np.zeros(7)])

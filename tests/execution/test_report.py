@@ -18,7 +18,7 @@ def perfect(timed):
     return timed.sampled(0.002)
 
 
-def test_the_plan_itself_is_flawless(timed, arm, perfect):
+def test_the_plan_itself_is_flawless(timed, arm, perfect) -> None:
     report = make_report(timed, arm, *perfect, DONE, ())
     assert report.flawless
     assert report.tracking.position < 1e-5
@@ -31,7 +31,7 @@ def test_the_plan_itself_is_flawless(timed, arm, perfect):
     assert report.worst_joint == arm.joint_names[np.argmin(margin.min(axis=0))]
 
 
-def test_a_late_hand_is_off_its_set_point_but_on_its_screw(timed, arm, perfect):
+def test_a_late_hand_is_off_its_set_point_but_on_its_screw(timed, arm, perfect) -> None:
     t, q, v = perfect
     late = np.concatenate([np.repeat(q[:1], 20, axis=0), q[:-20]])
     report = make_report(timed, arm, t, late, v, DONE, ())
@@ -41,7 +41,7 @@ def test_a_late_hand_is_off_its_set_point_but_on_its_screw(timed, arm, perfect):
     assert on_the_way.rotation < 1e-4
 
 
-def test_an_offset_is_seen_in_every_measure(timed, arm, perfect):
+def test_an_offset_is_seen_in_every_measure(timed, arm, perfect) -> None:
     t, q, v = perfect
     q = q + 0.01 * np.eye(arm.n)[1]
     report = make_report(timed, arm, t, q, v, DONE, ())
@@ -53,7 +53,7 @@ def test_an_offset_is_seen_in_every_measure(timed, arm, perfect):
     assert max(d.rotation for d in report.screws) > 1e-3
 
 
-def test_joints_outside_their_limits_are_named(timed, arm, perfect):
+def test_joints_outside_their_limits_are_named(timed, arm, perfect) -> None:
     t, q, v = perfect
     q = q.copy()
     q[7, 2] = arm.lower[2] - 0.01
@@ -64,7 +64,7 @@ def test_joints_outside_their_limits_are_named(timed, arm, perfect):
     assert not report.flawless
 
 
-def test_velocities_over_the_limit_are_seen(timed, arm, perfect):
+def test_velocities_over_the_limit_are_seen(timed, arm, perfect) -> None:
     t, q, v = perfect
     v = v.copy()
     v[5, 4] = -1.2 * arm.velocity_limits[4]
@@ -77,18 +77,18 @@ def test_velocities_over_the_limit_are_seen(timed, arm, perfect):
     ("status", "contacts"),
     [(DONE, (TOUCH,)), (ExecutionStatus(Phase.FAILED, 0, "blocked"), ())],
 )
-def test_contacts_and_failures_are_flaws(timed, arm, perfect, status, contacts):
+def test_contacts_and_failures_are_flaws(timed, arm, perfect, status, contacts) -> None:
     report = make_report(timed, arm, *perfect, status, contacts)
     assert not report.flawless
     assert report.contacts == contacts
 
 
-def test_only_segments_that_were_begun_are_measured(timed, arm, perfect):
+def test_only_segments_that_were_begun_are_measured(timed, arm, perfect) -> None:
     t, q, v = (values[:40] for values in perfect)
     assert len(make_report(timed, arm, t, q, v, DONE, ()).screws) == 1
 
 
-def test_an_empty_plan_has_nothing_to_measure(arm, perfect):
+def test_an_empty_plan_has_nothing_to_measure(arm, perfect) -> None:
     t, q, v = (values[:2] for values in perfect)
     report = make_report(TimedPlan(()), arm, t, q, v, DONE, ())
     assert report.screws == ()

@@ -30,7 +30,7 @@ def execution(station, timed):
     return simulate(station, timed, FAR[None])
 
 
-def test_a_good_plan_is_executed_within_all_tolerances(execution, timed):
+def test_a_good_plan_is_executed_within_all_tolerances(execution, timed) -> None:
     report = execution.report
     assert report.flawless
     assert report.status.phase is Phase.DONE
@@ -48,18 +48,18 @@ def test_a_good_plan_is_executed_within_all_tolerances(execution, timed):
     assert report.planned <= report.time < report.planned + 0.3
 
 
-def test_the_simulated_arm_lags_as_a_real_one_does(execution):
+def test_the_simulated_arm_lags_as_a_real_one_does(execution) -> None:
     """It has dynamics: nothing follows at once."""
     assert np.abs(execution.q - execution.q_desired).max() > 1e-4
 
 
-def test_a_station_serves_many_plans_and_forgets_each(station, execution, timed):
+def test_a_station_serves_many_plans_and_forgets_each(station, execution, timed) -> None:
     again = simulate(station, timed, FAR[None])
     np.testing.assert_array_equal(again.q, execution.q)
     assert again.report == execution.report
 
 
-def test_the_idle_arm_is_held(station, robot, timed):
+def test_the_idle_arm_is_held(station, robot, timed) -> None:
     for name, angle in robot.parked.items():
         joint = station.plant.GetJointByName(name)
         context = station.plant.GetMyContextFromRoot(station.context(START, FAR[None]))
@@ -67,7 +67,7 @@ def test_the_idle_arm_is_held(station, robot, timed):
     assert station.plant.num_actuators() == 15
 
 
-def test_the_joint_path_alone_arrives_too(robot, timed):
+def test_the_joint_path_alone_arrives_too(robot, timed) -> None:
     baseline = build_station(robot, follow_screws=False)
     report = simulate(baseline, timed, np.empty((0, 4, 4))).report
     assert report.flawless
@@ -75,7 +75,7 @@ def test_the_joint_path_alone_arrives_too(robot, timed):
     assert report.final.position < 2e-3
 
 
-def test_an_obstacle_in_the_way_blocks_the_arm(robot, arm, timed):
+def test_an_obstacle_in_the_way_blocks_the_arm(robot, arm, timed) -> None:
     blocked = build_station(robot, objects=[POST])
     way = arm.pose(timed.segments[0].q[[0, -1]])[:, :3, 3]
     ahead = way[1] + 0.06 * (way[1] - way[0]) / np.linalg.norm(way[1] - way[0])
@@ -91,7 +91,7 @@ def test_an_obstacle_in_the_way_blocks_the_arm(robot, arm, timed):
 
 
 @pytest.mark.parametrize("kind", ["empty", "limits", "start"])
-def test_plans_that_must_not_begin_do_not_move_the_arm(station, arm, timed, kind):
+def test_plans_that_must_not_begin_do_not_move_the_arm(station, arm, timed, kind) -> None:
     first, last = timed.segments
     q_start = np.array(START)
     if kind == "empty":
@@ -107,7 +107,7 @@ def test_plans_that_must_not_begin_do_not_move_the_arm(station, arm, timed, kind
     assert done.t[-1] < 0.1
 
 
-def test_a_set_point_out_of_reach_ends_the_execution(station, timed):
+def test_a_set_point_out_of_reach_ends_the_execution(station, timed) -> None:
     first, last = timed.segments
     X_WB = last.X_WB.copy()
     X_WB[:3, 3] += [0.0, 0.0, 2.0]
@@ -118,7 +118,7 @@ def test_a_set_point_out_of_reach_ends_the_execution(station, timed):
     assert report.velocity < 1.05
 
 
-def test_touching_the_bowl_is_seen(robot, arm, timed):
+def test_touching_the_bowl_is_seen(robot, arm, timed) -> None:
     """A bowl just under the hand's path is grazed; the plan is done, but not flawless."""
     station = build_station(robot, objects=[BOWL])
     p = arm.pose(timed.segments[0].q[-1])[:3, 3]
@@ -135,14 +135,14 @@ def test_touching_the_bowl_is_seen(robot, arm, timed):
     assert "touches" in str(contact)
 
 
-def test_the_diagram_can_be_drawn(station):
+def test_the_diagram_can_be_drawn(station) -> None:
     dot = station.graphviz
     assert dot.startswith("digraph")
     for name in ("executor", "measured_log", "plant", "scene_graph", "joint_command"):
         assert name in dot
 
 
-def test_the_executor_works_in_a_diagram_of_the_users_own(arm, timed):
+def test_the_executor_works_in_a_diagram_of_the_users_own(arm, timed) -> None:
     from pydrake.common.value import Value
     from pydrake.systems.analysis import Simulator
     from pydrake.systems.primitives import DiscreteTimeDelay

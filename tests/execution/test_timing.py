@@ -8,18 +8,30 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drake_screw.execution import TimedPlan, TimeLimits
-from drake_screw.execution.timing import TimedSegment, largest_ratios, time_plan
+from drake_screw.execution import TimedPlan, TimeLimits, timing
+from drake_screw.execution.timing import TimedSegment, time_plan
 from drake_screw.planning import Plan, ReferencePlanner
 from drake_screw.planning.outcomes import Cause, one_outcome
 from drake_screw.screws import exp, rotation_angle, sclerp, translation_distance
+
+
+def largest_ratios(
+    plan: TimedPlan, velocity: np.ndarray, acceleration: float, *, every: float = 1e-3
+) -> tuple[float, float]:
+    """The largest velocity and acceleration of a timed plan, over their limits.
+
+    Accelerations are difference quotients of the velocity over `every` seconds.
+    """
+    _, _, v = plan.sampled(every)
+    a = np.diff(v[:-1], axis=0) / every
+    return float((np.abs(v) / velocity).max()), float((np.abs(a) / acceleration).max())
 
 
 @pytest.mark.parametrize(
     "limits",
     [TimeLimits(), TimeLimits(0.05), TimeLimits(1.0, 8.0, 0.02), TimeLimits(0.3, 0.4, 0.3)],
 )
-def test_limits_hold_between_grid_points(arm, time_it, limits):
+def test_limits_hold_between_grid_points(arm, time_it, limits) -> None:
     timed = time_it(limits)
     velocity, acceleration = largest_ratios(
         timed, limits.speed * arm.velocity_limits, limits.acceleration, every=4e-4
@@ -30,7 +42,7 @@ def test_limits_hold_between_grid_points(arm, time_it, limits):
 
 
 @pytest.mark.parametrize("seed", [0, 1, 3, 4, 5, 6])
-def test_random_plans_keep_the_limits(arm, seed):
+def test_random_plans_keep_the_limits(arm, seed) -> None:
     rng = np.random.default_rng(seed)
     q = (arm.lower + arm.upper) / 2 + 0.2 * (arm.upper - arm.lower) * rng.uniform(-1, 1, arm.n)
     X_WS = arm.pose(q)
@@ -43,7 +55,7 @@ def test_random_plans_keep_the_limits(arm, seed):
     assert max(ratios) <= 1.0 + 2e-2
 
 
-def test_each_segment_runs_from_rest_to_rest_in_order(timed):
+def test_each_segment_runs_from_rest_to_rest_in_order(timed) -> None:
     for piece in timed.segments:
         assert piece.s[0] == 0.0
         assert piece.s[-1] == pytest.approx(1.0, abs=1e-12)
@@ -52,7 +64,7 @@ def test_each_segment_runs_from_rest_to_rest_in_order(timed):
     np.testing.assert_allclose(timed.segments[0].q[-1], timed.segments[1].q[0], atol=1e-9)
 
 
-def test_the_joint_path_stays_on_the_screws(arm, timed, guides):
+def test_the_joint_path_stays_on_the_screws(arm, timed, guides) -> None:
     for t in np.linspace(0.0, timed.duration, 60):
         point = timed.at(t)
         X_WA, X_WB = timed.poses[point.segment], timed.poses[point.segment + 1]
@@ -62,7 +74,7 @@ def test_the_joint_path_stays_on_the_screws(arm, timed, guides):
     np.testing.assert_allclose(arm.pose(timed.at(timed.duration).q), guides[-1], atol=1e-6)
 
 
-def test_velocities_are_derivatives(timed):
+def test_velocities_are_derivatives(timed) -> None:
     for t in np.linspace(0.05, timed.duration - 0.05, 40):
         before, here, after = (timed.at(t + h) for h in (-1e-4, 0.0, 1e-4))
         if before.segment == after.segment:
@@ -70,18 +82,18 @@ def test_velocities_are_derivatives(timed):
             assert (after.s - before.s) / 2e-4 == pytest.approx(here.rate, abs=2e-4)
 
 
-def test_slower_limits_take_longer(time_it):
+def test_slower_limits_take_longer(time_it) -> None:
     fast, slow = time_it(TimeLimits(0.5)), time_it(TimeLimits(0.05))
     assert slow.duration > 1.5 * fast.duration
 
 
-def test_it_rests_before_and_after(timed):
+def test_it_rests_before_and_after(timed) -> None:
     np.testing.assert_array_equal(timed.at(-1.0).q, timed.segments[0].q[0])
     np.testing.assert_allclose(timed.at(timed.duration + 9.0).q, timed.segments[-1].q[-1])
     assert timed.at(timed.duration + 9.0).segment == 1
 
 
-def test_samples_include_both_ends(timed):
+def test_samples_include_both_ends(timed) -> None:
     t, q, v = timed.sampled(0.1)
     assert t[0] == 0.0
     assert t[-1] == timed.duration
@@ -89,14 +101,14 @@ def test_samples_include_both_ends(timed):
     np.testing.assert_allclose(np.diff(t)[:-1], 0.1)
 
 
-def test_begins_are_where_the_segments_change(timed):
-    begins = timed.begins
+def test_segments_follow_one_another_without_a_gap(timed) -> None:
+    begins = np.cumsum([0.0, *(piece.duration for piece in timed.segments)])
     assert begins[-1] == pytest.approx(timed.duration)
     assert timed.at(begins[1] - 1e-6).segment == 0
     assert timed.at(begins[1] + 1e-6).segment == 1
 
 
-def test_a_segment_without_motion_takes_the_smoothing_time(arm, plan):
+def test_a_segment_without_motion_takes_the_smoothing_time(arm, plan) -> None:
     X = arm.pose(plan.q[0])
     still = Plan(
         np.repeat(plan.q[:1], 3, axis=0),
@@ -109,7 +121,7 @@ def test_a_segment_without_motion_takes_the_smoothing_time(arm, plan):
     np.testing.assert_array_equal(timed.at(0.05).q, plan.q[0])
 
 
-def test_few_points_are_enough(arm, plan, guides):
+def test_few_points_are_enough(arm, plan, guides) -> None:
     """A plan may come with its ends only."""
     ends = [0, int(np.flatnonzero(plan.segment == 0)[-1])]
     short = Plan(plan.q[ends], plan.segment[ends], np.array([0.0, 1.0]), plan.outcome)
@@ -127,7 +139,7 @@ def test_few_points_are_enough(arm, plan, guides):
         [0, 3.1, 0, 0.2, 0.1, 0],
     ],
 )
-def test_pose_is_the_exponential(twist):
+def test_pose_is_the_exponential(twist) -> None:
     X_WA = exp(np.array([0.3, 0.2, -0.5, 0.7, 0.1, 0.4]))
     X_WB = exp(np.array(twist, dtype=float)) @ X_WA
     piece = TimedSegment(X_WA, X_WB, 0.1, *(np.zeros((2, 1)) for _ in range(4)))
@@ -135,7 +147,26 @@ def test_pose_is_the_exponential(twist):
         np.testing.assert_allclose(piece.pose(s), sclerp(X_WA, X_WB, s), atol=1e-12)
 
 
-def test_a_plan_is_its_own_copy_and_an_empty_one_is_empty(timed):
+def test_a_plan_is_its_own_copy_and_an_empty_one_is_empty(timed) -> None:
     assert copy.deepcopy(timed) is timed
     assert TimedPlan(()).duration == 0.0
     assert replace(timed, segments=timed.segments[:1]).duration < timed.duration
+
+
+def test_where_toppras_arithmetic_fails_other_grid_points_are_taken(
+    time_it, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    expected, tried = time_it(TimeLimits()), []
+
+    class Fragile(timing.Toppra):
+        def __init__(self, path: object, plant: object, gridpoints: np.ndarray) -> None:
+            super().__init__(path, plant, gridpoints)
+            tried.append(len(gridpoints))
+
+        def SolvePathParameterization(self) -> object:
+            return None if tried[-1] == timing.GRIDS[0] else super().SolvePathParameterization()
+
+    monkeypatch.setattr(timing, "Toppra", Fragile)
+    found = time_it(TimeLimits())
+    assert tried == list(timing.GRIDS[:2]) * len(expected.segments)
+    assert found.duration == pytest.approx(expected.duration, rel=1e-2)

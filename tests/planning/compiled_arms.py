@@ -1,28 +1,58 @@
-"""Random arms, and their generated code run as plain Python, for tests of the compiled planner."""
+"""Random arms, and their programs run in numpy, for tests of the compiled planner."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, floor, sqrt
 from typing import Any
 
 import numpy as np
 
+from drake_screw.planning.compiled import arm_module, step_code
 from drake_screw.planning.compiled import rows as r
-from drake_screw.planning.compiled import step_code
+from drake_screw.planning.compiled.expressions import Node, Program
 from drake_screw.planning.compiled.link_frames import LinkFrames, link_frames
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import adjoint, exp, inverse
 
-NAMES = {"ceil": ceil, "floor": floor, "sqrt": sqrt, "uintp": int, "lane_code": lambda f: f}
+OPERATIONS: dict[str, Callable[..., Any]] = {
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+    "neg": np.negative,
+    "abs": np.abs,
+    "sqrt": np.sqrt,
+    "floor": np.floor,
+    "ceil": np.ceil,
+    "min": lambda x, y: np.where(y < x, y, x),
+    "max": lambda x, y: np.where(y > x, y, x),
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+    "&": np.logical_and,
+    "|": np.logical_or,
+    "~": np.logical_not,
+    "where": np.where,
+}
 LIMIT = 3.0
 
 
-def run_in_python(source: str) -> dict[str, Any]:
-    """The functions of generated source text, not compiled."""
-    names = dict(NAMES)
-    exec(source, names)
-    return names
+def run_in_numpy(program: Program, block: np.ndarray) -> None:
+    """Do what a program says on a block (rows, lanes), without compiling it."""
+    values: dict[Node, Any] = {}
+    for node in program.nodes:
+        arguments = [values[argument] for argument in node.arguments]
+        match node.operation:
+            case "constant":
+                values[node] = node.number
+            case "load":
+                values[node] = block[node.row].copy()
+            case "store":
+                block[node.row] = arguments[0]
+            case operation:
+                values[node] = OPERATIONS[operation](*arguments)
 
 
 def random_chain(
@@ -51,26 +81,24 @@ def random_chain(
 
 @dataclass
 class Bench:
-    """An arm's generated functions and a block of lanes to run them on.
+    """An arm's programs and a block of lanes to run them on.
 
     Attributes:
         chain: the arm.
         frames: its link frames.
-        functions: by name.
-        block: (rows, lanes), a view on `flat`.
-        flat: the block as the functions take it.
+        programs: by name.
+        block: (rows, lanes).
         rows: places in the block.
     """
 
     chain: ScrewChain
     frames: LinkFrames
-    functions: dict[str, Any]
+    programs: dict[str, Program]
     block: np.ndarray
-    flat: np.ndarray
     rows: r.Rows
 
     def run(self, name: str) -> None:
-        self.functions[name](self.flat)
+        run_in_numpy(self.programs[name], self.block)
 
     def base_twist(self, V: np.ndarray) -> np.ndarray:
         """Twists (..., 6) in W as the block holds them, in B."""
@@ -85,10 +113,7 @@ class Bench:
 def bench(chain: ScrewChain, settings: step_code.Settings | None = None) -> Bench:
     """Lay out everything for an arm."""
     settings = settings or step_code.Settings()
-    frames, n = link_frames(chain.screws, chain.home), chain.n
-    arrive, aim, count = step_code.arrive_and_aim(frames, settings)
-    judge = step_code.judge(chain.lower.tolist(), chain.upper.tolist(), settings)
-    parts = [step_code.blend(n, k) for k in range(1, 7)] + [step_code.rate(frames), arrive, aim]
-    flat = np.zeros(count * r.LANES)
-    functions = run_in_python("\n\n".join([*parts, judge]))
-    return Bench(chain, frames, functions, flat.reshape(-1, r.LANES), flat, r.Rows(n))
+    frames = link_frames(chain.screws, chain.home)
+    programs, count = arm_module.programs(frames, chain.lower, chain.upper, settings)
+    block = np.zeros((count, r.LANES))
+    return Bench(chain, frames, {p.name: p for p in programs}, block, r.Rows(chain.n))

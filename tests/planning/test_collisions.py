@@ -9,10 +9,9 @@ import pytest
 from pydrake.geometry import Box, Capsule, Cylinder, Ellipsoid, Sphere
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning import BatchPlanner, Cause, ReferencePlanner
+from drake_screw.planning import BatchPlanner, Cause, Plan, ReferencePlanner
 from drake_screw.planning.clearance import bubbles_of, covering, half_extents
 from drake_screw.planning.collisions import SPACING, CollisionFreePlanner, PlanChecker
-from drake_screw.planning.paths import Frames, joint_paths
 from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig, build_workcell
 from drake_screw.screws import exp, pose, rotation_angle, sclerp, translation_distance
 
@@ -31,6 +30,15 @@ def workcell():
 @pytest.fixture(scope="module")
 def checker(workcell) -> PlanChecker:
     return PlanChecker(workcell)
+
+
+@pytest.fixture(scope="module")
+def batch(workcell) -> BatchPlanner:
+    return BatchPlanner(workcell.arm.screw_chain())
+
+
+def plans_of(batch: BatchPlanner, lesson: Demonstration, X_WO: np.ndarray) -> tuple[Plan, ...]:
+    return batch.plans([lesson], X_WO, START, np.zeros(len(X_WO), dtype=int))
 
 
 def placed(*places: np.ndarray) -> np.ndarray:
@@ -55,44 +63,33 @@ def some_places(N: int, seed: int = 0) -> np.ndarray:
     return placed(*(AT + rng.uniform([-0.08, -0.1, 0.0], [0.08, 0.1, 0.0], (N, 3))))
 
 
-def test_frames_are_the_screw_chains(workcell, rng):
-    chain = workcell.arm.screw_chain()
-    frames, q = Frames(chain), rng.uniform(chain.lower, chain.upper, (20, chain.n))
-    np.testing.assert_allclose(frames.pose(q), chain.pose(q), atol=1e-12)
-    np.testing.assert_allclose(frames.jacobian(q), chain.jacobian(q), atol=1e-12)
-
-
-def test_paths_end_where_the_reference_planners_do(workcell, checker):
+def test_paths_end_where_the_reference_planners_do(workcell, batch) -> None:
     arm, X_WO = workcell.arm, some_places(3)
-    paths = joint_paths(checker.bubbles.frames, ABOVE, X_WO, START)
+    plans = plans_of(batch, ABOVE, X_WO)
     reference = ReferencePlanner(arm, step=0.02)
     for i in range(3):
         plan = reference.plan(START, ABOVE.transfer(X_WO[i]))
         assert plan.success
-        np.testing.assert_allclose(paths.q[i, -1], plan.q[-1], atol=2e-4)
+        np.testing.assert_allclose(plans[i].q[-1], plan.q[-1], atol=2e-4)
 
 
-def test_paths_stay_on_the_screws_through_all_guiding_poses(checker, workcell):
+def test_paths_stay_on_the_screws_through_all_guiding_poses(batch, workcell) -> None:
     X_WO = some_places(4)
-    paths = joint_paths(checker.bubbles.frames, THROUGH, X_WO, START)
-    assert paths.q.shape[:2] == (4, len(paths.s))
-    assert paths.segment[-1] == 2
-    assert (np.diff(paths.segment) >= 0).all()
-    frames, guides = checker.bubbles.frames, THROUGH.transfer(X_WO)
-    X_WA = frames.pose(np.tile(START, (4, 1)))
-    for k in range(1, len(paths.s)):
-        segment = paths.segment[k]
-        before = X_WA if segment == 0 else guides[:, segment - 1]
-        X_WS = sclerp(before, guides[:, segment], np.full(4, paths.s[k]))
-        X_WE = frames.pose(paths.q[:, k])
+    for plan, guides in zip(plans_of(batch, THROUGH, X_WO), THROUGH.transfer(X_WO), strict=True):
+        assert len(plan.q) == len(plan.s) == len(plan.segment)
+        assert plan.segment[-1] == 2
+        assert (np.diff(plan.segment) >= 0).all()
+        X_WA = np.concatenate([workcell.arm.pose(START)[None], guides])[plan.segment]
+        X_WS = sclerp(X_WA, guides[plan.segment], plan.s)
+        X_WE = workcell.arm.pose(plan.q)
         assert translation_distance(X_WE, X_WS).max() < 2e-4
         assert rotation_angle(X_WE, X_WS).max() < 1e-3
 
 
-def test_no_instances_make_no_paths(checker):
-    paths = joint_paths(checker.bubbles.frames, ABOVE, some_places(3)[:0], START)
-    assert len(paths.q) == 0
-    found = checker.first_collisions(paths, some_places(3)[:0])
+def test_no_instances_make_no_paths(checker, batch) -> None:
+    plans = plans_of(batch, ABOVE, some_places(3)[:0])
+    assert plans == ()
+    found = checker.first_collisions(plans, some_places(3)[:0])
     assert len(found.collides) == 0
 
 
@@ -109,7 +106,7 @@ def test_no_instances_make_no_paths(checker):
     ],
     ids=lambda shape: type(shape).__name__,
 )
-def test_spheres_cover_shapes(shape, rng):
+def test_spheres_cover_shapes(shape, rng) -> None:
     half = half_extents(shape)
     p = rng.uniform(-half, half, (20_000, 3))
     match shape:
@@ -128,7 +125,7 @@ def test_spheres_cover_shapes(shape, rng):
     assert radius <= max(1.3 * np.linalg.norm(np.sort(half)[:2]), 1.01 * half.max())
 
 
-def test_bounds_never_clear_a_collision(workcell, rng):
+def test_bounds_never_clear_a_collision(workcell, rng) -> None:
     """Whatever Drake finds colliding, the bounds do not call free, and they call much free."""
     bubbles, arm = bubbles_of(workcell), workcell.arm
     q = rng.uniform(arm.lower, arm.upper, (600, arm.n))
@@ -141,7 +138,7 @@ def test_bounds_never_clear_a_collision(workcell, rng):
     assert cleared.sum() > 0.5 * (~hit).sum()
 
 
-def test_bounds_follow_the_bowl(workcell):
+def test_bounds_follow_the_bowl(workcell) -> None:
     bubbles = bubbles_of(workcell)
     q = np.array(START)[None]
     p_WE = workcell.arm.pose(START)[:3, 3]
@@ -150,49 +147,62 @@ def test_bounds_follow_the_bowl(workcell):
     assert near.min() < 0.0 < far.min()
 
 
-def test_a_free_path_is_free(checker):
+def test_a_free_path_is_free(checker, batch) -> None:
     X_WO = some_places(5)
-    paths = joint_paths(checker.bubbles.frames, ABOVE, X_WO, START)
-    found = checker.first_collisions(paths, X_WO)
+    plans = plans_of(batch, ABOVE, X_WO)
+    found = checker.first_collisions(plans, X_WO)
     assert not found.collides.any()
     assert (found.segment == -1).all()
     assert np.isnan(found.q).all()
-    assert checker.explain(ABOVE, X_WO[0], START) is None
+    assert checker.explain(plans[0], X_WO[0]) is None
 
 
-def test_first_collisions_are_those_of_a_dense_search(checker, workcell):
+def test_first_collisions_are_those_of_a_dense_search(checker, batch, workcell) -> None:
     X_WO = some_places(4)
-    paths = joint_paths(checker.bubbles.frames, THROUGH, X_WO, START)
-    found = checker.first_collisions(paths, X_WO)
+    plans = plans_of(batch, THROUGH, X_WO)
+    found = checker.first_collisions(plans, X_WO)
     assert found.collides.all()
     assert (found.segment == 1).all()
     share = np.linspace(0.0, 1.0, 40, endpoint=False)[:, None]
-    for i in range(4):
-        steps = itertools.pairwise(paths.q[i])
+    for i, plan in enumerate(plans):
+        steps = itertools.pairwise(plan.q)
         dense = np.concatenate([a + share * (b - a) for a, b in steps])
         hit = workcell.collides(dense, X_WO[i])
         at = int(np.argmax(hit))
         k = at // 40
-        fraction = paths.s[k] * (paths.segment[k] == 1) + (at % 40) / 40 * (
-            paths.s[k + 1] - paths.s[k] * (paths.segment[k] == 1)
+        fraction = plan.s[k] * (plan.segment[k] == 1) + (at % 40) / 40 * (
+            plan.s[k + 1] - plan.s[k] * (plan.segment[k] == 1)
         )
         assert found.fraction[i] == pytest.approx(fraction, abs=0.06)
         assert workcell.collides(found.q[i : i + 1], X_WO[i]).all()
 
 
-def test_much_of_a_path_is_cleared_without_asking_drake(workcell):
+def test_plans_of_any_length_are_checked_each_by_itself(checker, batch) -> None:
+    X_WO = some_places(4)
+    mixed = [
+        plans_of(batch, d, X)[0] for d, X in zip([ABOVE, THROUGH] * 2, X_WO[:, None], strict=True)
+    ]
+    assert len({len(plan.q) for plan in mixed}) > 1
+    found = checker.first_collisions(mixed, X_WO)
+    np.testing.assert_array_equal(found.collides, [False, True] * 2)
+    for i, plan in enumerate(mixed):
+        alone = checker.first_collisions([plan], X_WO[i : i + 1])
+        assert alone.fraction[0] == found.fraction[i]
+        np.testing.assert_array_equal(alone.q[0], found.q[i])
+
+
+def test_much_of_a_path_is_cleared_without_asking_drake(workcell, batch) -> None:
     checker, X_WO = PlanChecker(workcell), some_places(6)
-    paths = joint_paths(checker.bubbles.frames, ABOVE, X_WO, START)
-    checker.first_collisions(paths, X_WO)
-    length = translation_distance(
-        checker.bubbles.frames.pose(paths.q[:, :-1].reshape(-1, 7)),
-        checker.bubbles.frames.pose(paths.q[:, 1:].reshape(-1, 7)),
-    ).sum()
+    plans = plans_of(batch, ABOVE, X_WO)
+    checker.first_collisions(plans, X_WO)
+    X_WE = [workcell.arm.pose(plan.q) for plan in plans]
+    length = sum(translation_distance(X[:-1], X[1:]).sum() for X in X_WE)
     assert checker.asked < 0.75 * length / SPACING
 
 
-def test_a_collision_is_explained_by_segment_and_bodies(checker):
-    hit = checker.explain(THROUGH, placed(AT)[0], START)
+def test_a_collision_is_explained_by_segment_and_bodies(checker, batch) -> None:
+    X_WO = placed(AT)
+    hit = checker.explain(plans_of(batch, THROUGH, X_WO)[0], X_WO[0])
     assert hit is not None
     assert hit.segment == 1
     assert 0.0 < hit.fraction < 1.0
@@ -202,12 +212,11 @@ def test_a_collision_is_explained_by_segment_and_bodies(checker):
 
 
 @pytest.fixture(scope="module")
-def planners(workcell):
-    batch = BatchPlanner(workcell.arm.screw_chain())
+def planners(workcell, batch):
     return batch, CollisionFreePlanner(batch, workcell)
 
 
-def test_colliding_successes_become_collisions(planners):
+def test_colliding_successes_become_collisions(planners) -> None:
     batch, planner = planners
     X_WO = some_places(5)
     before = batch.all_outcomes([ABOVE, THROUGH], X_WO, START)
@@ -219,21 +228,35 @@ def test_colliding_successes_become_collisions(planners):
     assert ((after.fraction[:, 1] > 0.0) & (after.fraction[:, 1] < 1.0)).all()
 
 
-def test_any_success_goes_on_to_the_next_demonstration(planners):
+def test_outcomes_that_are_checked_stay_as_they_were(planners, monkeypatch) -> None:
+    batch, planner = planners
+    X_WO = some_places(5)
+    given = batch.all_outcomes([ABOVE, THROUGH], X_WO, START)
+    for values in (given.cause, given.segment, given.joint, given.fraction):
+        values.flags.writeable = False
+    monkeypatch.setattr(batch, "all_outcomes", lambda *_: given)
+    monkeypatch.setattr(batch, "any_success", lambda *_: given)
+    for plan in (planner.all_outcomes, planner.any_success):
+        after = plan([ABOVE, THROUGH], X_WO, START)
+        np.testing.assert_array_equal(after.success, [[True, False]] * 5)
+    assert given.success.all()
+
+
+def test_any_success_goes_on_to_the_next_demonstration(planners) -> None:
     _, planner = planners
     outcomes = planner.any_success([THROUGH, ABOVE], some_places(5), START)
     assert outcomes.any_success.all()
     assert outcomes.success[:, 1].all()
 
 
-def test_any_success_finds_none_where_all_collide(planners):
+def test_any_success_finds_none_where_all_collide(planners) -> None:
     _, planner = planners
     outcomes = planner.any_success([THROUGH], some_places(3), START)
     assert not outcomes.any_success.any()
     assert (outcomes.cause == Cause.COLLISION).all()
 
 
-def test_failures_within_the_arm_stay_as_they_are(planners):
+def test_failures_within_the_arm_stay_as_they_are(planners) -> None:
     batch, planner = planners
     far = placed(AT + 1.5 * np.eye(3)[0])
     before = batch.all_outcomes([ABOVE], far, START)
@@ -247,9 +270,9 @@ def rng() -> np.random.Generator:
     return np.random.default_rng(7)
 
 
-def test_a_moving_screw_of_the_bowl_moves_the_answer(checker):
+def test_a_moving_screw_of_the_bowl_moves_the_answer(checker, batch) -> None:
     """Turning the bowl about its axis changes nothing; the demonstration turns with it."""
     turned = placed(AT) @ exp(np.array([0.0, 0.0, 0.2, 0.0, 0.0, 0.0]))
-    hit = checker.explain(THROUGH, turned[0], START)
+    hit = checker.explain(plans_of(batch, THROUGH, turned)[0], turned[0])
     assert hit is not None
     assert hit.segment == 1

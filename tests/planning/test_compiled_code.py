@@ -1,4 +1,4 @@
-"""An arm's generated code, run as plain Python, against the plain formulas in numpy."""
+"""An arm's programs, run in numpy, against the plain formulas in numpy."""
 
 from __future__ import annotations
 
@@ -299,7 +299,7 @@ def test_judge_lets_a_plain_step_pass() -> None:
 def test_judge_sees_what_matters() -> None:
     assert judged(PROGRESS=0.9)[r.EVENT] == 1.0
     assert judged(q=2.95, q_stage=3.05)[r.EVENT] == 1.0
-    assert judged(q=-2.95, q_stage=-3.05)[r.ROOM] <= 0.0
+    assert judged(q=-2.95, q_stage=-3.05)[r.MARGIN] <= 0.0
     assert judged(RESIDUAL=1.01 * RESIDUAL_LIMIT**2)[r.EVENT] == 1.0
     assert judged(RESIDUAL=0.99 * RESIDUAL_LIMIT**2)[r.EVENT] == 0.0
     fast = 1.01 * RATE_LIMIT

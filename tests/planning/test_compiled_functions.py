@@ -1,43 +1,32 @@
-"""Elementary functions and small matrices as generated code, against numpy."""
+"""Elementary functions and small matrices as expressions, against numpy."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from drake_screw.planning.compiled.emitter import Emitter
+from drake_screw.planning.compiled.expressions import Block
 from drake_screw.planning.compiled.functions import cos_sin, log_between
 from drake_screw.planning.compiled.matrices import Factor, determinant
 from drake_screw.screws import exp, log
-from tests.planning.compiled_arms import run_in_python
-
-LANES = 16
+from tests.planning.compiled_arms import run_in_numpy
 
 
-def run(e: Emitter, rows: np.ndarray) -> np.ndarray:
-    """Run what an emitter has written on rows (k, m) of inputs, in blocks of lanes."""
-    function = run_in_python(e.function("code", "Does it."))["code"]
-    m = rows.shape[1]
-    blocks = []
-    for first in range(0, m, LANES):
-        block = np.zeros((rows.shape[0], LANES))
-        part = rows[:, first : first + LANES]
-        block[:, : part.shape[1]] = part
-        flat = block.reshape(-1)
-        function(flat)
-        blocks.append(flat.reshape(-1, LANES)[:, : part.shape[1]])
-    return np.concatenate(blocks, axis=1)
+def run(b: Block, rows: np.ndarray) -> np.ndarray:
+    """Run what was written down on rows (k, m) of inputs."""
+    out = rows.copy()
+    run_in_numpy(b.program("code"), out)
+    return out
 
 
 def test_cos_and_sin() -> None:
-    e = Emitter(LANES)
-    for k, value in enumerate(cos_sin(e, e.load(0))):
-        e.store(1 + k, value)
+    b = Block()
+    b[1:3] = cos_sin(b[0])
     special = np.arange(-8, 9) * np.pi / 4.0
     angles = np.concatenate([special, special + 1e-9, np.linspace(-20.0, 20.0, 2001)])
     rows = np.zeros((3, len(angles)))
     rows[0] = angles
-    _, c, s = run(e, rows)
+    _, c, s = run(b, rows)
     np.testing.assert_allclose(c, np.cos(angles), rtol=0, atol=4e-13)
     np.testing.assert_allclose(s, np.sin(angles), rtol=0, atol=4e-13)
     np.testing.assert_allclose(c * c + s * s, 1.0, rtol=0, atol=1e-12)
@@ -45,13 +34,11 @@ def test_cos_and_sin() -> None:
 
 def twist_of(X: np.ndarray, Y: np.ndarray) -> np.ndarray:
     """log(Y X^-1) by the generated code."""
-    e = Emitter(LANES)
-    V = log_between(e, [e.load(k) for k in range(12)], [e.load(12 + k) for k in range(12)])
-    for k, value in enumerate(V):
-        e.store(24 + k, value)
+    b = Block()
+    b[24:30] = log_between(b[0:12].reshape(3, 4), b[12:24].reshape(3, 4))
     rows = np.zeros((30, len(X)))
     rows[:12], rows[12:24] = X[:, :3].reshape(-1, 12).T, Y[:, :3].reshape(-1, 12).T
-    return run(e, rows)[24:].T
+    return run(b, rows)[24:].T
 
 
 @pytest.mark.parametrize(
@@ -91,15 +78,13 @@ def test_symmetric_systems(n: int) -> None:
     m = 64
     root = rng.normal(size=(m, n, n + 1))
     A, b = root @ np.swapaxes(root, 1, 2), rng.normal(size=(m, n))
-    e = Emitter(LANES)
-    lower = [[e.load(i * n + j) for j in range(i + 1)] for i in range(n)]
-    factor = Factor.of(e, lower)
-    for k, value in enumerate(factor.solve(e, [e.load(n * n + k) for k in range(n)])):
-        e.store(n * n + n + k, value)
-    e.store(n * n + 2 * n, factor.determinant)
+    block = Block()
+    factor = Factor.of(np.tril(block[0 : n * n].reshape(n, n)))
+    block[n * n + n : n * n + 2 * n] = factor.solve(block[n * n : n * n + n])
+    block[n * n + 2 * n] = factor.determinant
     rows = np.zeros((n * n + 2 * n + 1, m))
     rows[: n * n], rows[n * n : n * n + n] = A.reshape(m, -1).T, b.T
-    out = run(e, rows)
+    out = run(block, rows)
     x = out[n * n + n : n * n + 2 * n].T
     scale = np.linalg.cond(A) * np.linalg.norm(np.linalg.solve(A, b[..., None])[..., 0], axis=1)
     error = np.linalg.norm(x - np.linalg.solve(A, b[..., None])[..., 0], axis=1)
@@ -110,19 +95,8 @@ def test_symmetric_systems(n: int) -> None:
 @pytest.mark.parametrize("n", range(1, 7))
 def test_determinants(n: int) -> None:
     A = np.random.default_rng(n).normal(size=(48, n, n))
-    e = Emitter(LANES)
-    e.store(n * n, determinant(e, [[e.load(i * n + j) for j in range(n)] for i in range(n)]))
+    b = Block()
+    b[n * n] = determinant(b[0 : n * n].reshape(n, n))
     rows = np.zeros((n * n + 1, 48))
     rows[: n * n] = A.reshape(48, -1).T
-    np.testing.assert_allclose(run(e, rows)[-1], np.linalg.det(A), rtol=0, atol=1e-12)
-
-
-def test_constants_are_folded() -> None:
-    e = Emitter(LANES)
-    x = e.load(0)
-    assert e.sum((0.0, x), (2.0, 3.0), (-1.0,)) == 5.0
-    assert e.sum((x,)) == x
-    assert e.cross((0.0, 0.0, 1.0), (0.0, 0.0, 7.0)) == [0.0, 0.0, 0.0]
-    before = len(e.lines)
-    assert e.dot((1.0, 0.0), (x, x)) == x
-    assert len(e.lines) == before
+    np.testing.assert_allclose(run(b, rows)[-1], np.linalg.det(A), rtol=0, atol=1e-12)

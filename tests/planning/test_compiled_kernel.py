@@ -49,12 +49,29 @@ def work(workcell: Workcell) -> dict:
 
 @pytest.fixture(scope="module")
 def answers(baxter: Kernel, work: dict) -> Answers:
-    return baxter.plan(**work, threads=1, keep_ends=True)
+    return baxter.plan(**work, threads=1)
+
+
+@pytest.fixture(scope="module")
+def which() -> np.ndarray:
+    """A demonstration for each instance."""
+    return np.random.default_rng(7).integers(D, size=N)
+
+
+@pytest.fixture(scope="module")
+def traced(baxter: Kernel, work: dict, which: np.ndarray) -> list[Answers]:
+    return baxter.trace(**work, which=which, threads=1)
 
 
 def assert_same_bits(a: Answers, b: Answers) -> None:
-    for x, y in zip(a, b, strict=True):
+    for x, y in zip((*a[:-1], *a.trace), (*b[:-1], *b.trace), strict=True):
         assert x.tobytes() == y.tobytes()
+
+
+def whole(traced: list[Answers]) -> list[np.ndarray]:
+    """Answers and steps of all parts, one after the other; without `first`."""
+    parts = [(*a[:-1], a.trace.steps, *a.trace[2:]) for a in traced]
+    return [np.concatenate(x) for x in zip(*parts, strict=True)]
 
 
 def test_there_is_something_to_compare(answers: Answers) -> None:
@@ -63,17 +80,20 @@ def test_there_is_something_to_compare(answers: Answers) -> None:
 
 
 def test_successes_end_on_the_last_guiding_pose(
-    workcell: Workcell, work: dict, answers: Answers
+    workcell: Workcell, work: dict, which: np.ndarray, traced: list[Answers]
 ) -> None:
     """By the plant's kinematics, not the planner's own."""
-    success = np.argwhere(answers.cause == Cause.SUCCESS)
-    assert np.isnan(answers.end[answers.cause != Cause.SUCCESS]).all()
-    arm = workcell.arm
-    for i, d in success[:: max(1, len(success) // 400)]:
-        X_WE, X_WG = arm.pose(answers.end[i, d]), work["X_WO"][i, 0] @ work["X_OE"][d][-1]
-        assert translation_distance(X_WE, X_WG) <= POSITION_TOLERANCE
-        assert rotation_angle(X_WE, X_WG) <= ROTATION_TOLERANCE
-        assert (arm.margin(answers.end[i, d]) > 0.0).all()
+    arm, before, seen = workcell.arm, 0, 0
+    for a in traced:
+        for i in np.flatnonzero(a.cause[:, 0] == Cause.SUCCESS):
+            d, end = which[before + i], a.trace.q[a.trace.first[i + 1] - 1, 1]
+            X_WE, X_WG = arm.pose(end), work["X_WO"][before + i, 0] @ work["X_OE"][d][-1]
+            assert translation_distance(X_WE, X_WG) <= POSITION_TOLERANCE
+            assert rotation_angle(X_WE, X_WG) <= ROTATION_TOLERANCE
+            assert (arm.margin(end) > 0.0).all()
+            seen += 1
+        before += len(a.cause)
+    assert seen > 50
 
 
 @pytest.mark.parametrize("chunk", [1, 100, 700, 10**6])
@@ -87,7 +107,7 @@ def test_neither_chunks_nor_threads_matter(
     threads: int,
 ) -> None:
     monkeypatch.setattr(kernel, "CHUNK", chunk)
-    assert_same_bits(baxter.plan(**work, threads=threads, keep_ends=True), answers)
+    assert_same_bits(baxter.plan(**work, threads=threads), answers)
 
 
 @pytest.mark.parametrize(
@@ -96,8 +116,8 @@ def test_neither_chunks_nor_threads_matter(
 def test_neighbours_in_the_batch_do_not_matter(
     baxter: Kernel, work: dict, answers: Answers, part: slice
 ) -> None:
-    some = baxter.plan(**(work | {"X_WO": work["X_WO"][part]}), keep_ends=True)
-    assert_same_bits(some, Answers(*(x[part] for x in answers)))
+    some = baxter.plan(**(work | {"X_WO": work["X_WO"][part]}))
+    assert_same_bits(some, answers.part(part))
 
 
 def test_order_does_not_matter(baxter: Kernel, work: dict, answers: Answers) -> None:
@@ -106,35 +126,59 @@ def test_order_does_not_matter(baxter: Kernel, work: dict, answers: Answers) -> 
     def shuffled(X_WO: np.ndarray) -> np.ndarray:
         return np.argsort(rng.random((len(X_WO), D)), axis=1)
 
-    assert_same_bits(baxter.plan(**work, order=shuffled, threads=1, keep_ends=True), answers)
-    some = baxter.plan(**work, order=shuffled, threads=1, keep_ends=True, stop_at_success=True)
+    assert_same_bits(baxter.plan(**work, order=shuffled, threads=1), answers)
+    some = baxter.plan(**work, order=shuffled, threads=1, stop_at_success=True)
     tried = some.cause != Cause.NOT_TRIED
     success = some.cause == Cause.SUCCESS
     np.testing.assert_array_equal(success.any(axis=1), (answers.cause == Cause.SUCCESS).any(axis=1))
     assert tried[~success.any(axis=1)].all()
-    for x, y in zip(some, answers, strict=True):
+    for x, y in zip(some[:-1], answers[:-1], strict=True):
         assert x[tried].tobytes() == y[tried].tobytes()
 
 
-def test_ends_are_left_out_unless_asked_for(baxter: Kernel, work: dict, answers: Answers) -> None:
-    lean = baxter.plan(**work)
-    assert lean.end.size == 0
-    np.testing.assert_array_equal(lean.cause, answers.cause)
+def test_traced_plans_have_the_answers_of_the_others(
+    which: np.ndarray, answers: Answers, traced: list[Answers]
+) -> None:
+    """And the second pass, which writes the steps down, takes those that the first one counted."""
+    assert answers.trace.steps.size == 0
+    chosen = answers.part((np.arange(N)[:, None], which[:, None]))
+    for x, y in zip(chosen[:-1], whole(traced), strict=False):
+        assert x.tobytes() == y.tobytes()
+    for a in traced:
+        np.testing.assert_array_equal(np.diff(a.trace.first), a.trace.steps)
+        assert (a.trace.steps <= a.steps[:, 0]).all()
+
+
+@pytest.mark.parametrize("chunk", [1, 100, 10**6])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_neither_chunks_nor_threads_matter_to_the_steps(
+    baxter: Kernel,
+    work: dict,
+    which: np.ndarray,
+    traced: list[Answers],
+    monkeypatch: pytest.MonkeyPatch,
+    chunk: int,
+    threads: int,
+) -> None:
+    monkeypatch.setattr(kernel, "TRACED", chunk)
+    again = baxter.trace(**work, which=which, threads=threads)
+    for x, y in zip(whole(again), whole(traced), strict=True):
+        assert x.tobytes() == y.tobytes()
 
 
 def test_a_plan_to_where_the_hand_is_takes_no_motion(
     workcell: Workcell, baxter: Kernel, work: dict
 ) -> None:
     here = workcell.arm.pose(workcell.start)
-    plan = baxter.plan(
+    (plan,) = baxter.trace(
         [np.stack([here, here])],
         [np.zeros(2, dtype=np.int64)],
         np.eye(4)[None, None],
         workcell.start,
-        keep_ends=True,
+        np.zeros(1, dtype=np.int64),
     )
     assert plan.cause[0, 0] == Cause.SUCCESS
-    np.testing.assert_allclose(plan.end[0, 0], workcell.start, atol=1e-9)
+    np.testing.assert_allclose(plan.trace.q[-1, 1], workcell.start, atol=1e-9)
 
 
 def test_compiled_says_whether_the_first_plan_waits(workcell: Workcell, answers: Answers) -> None:

@@ -64,6 +64,39 @@ def test_furthest_segment_orders_failures_before_successes() -> None:
     assert late.furthest_segment[0] < late.furthest_segment[1]
 
 
+def test_the_best_attempt_is_the_one_that_came_furthest() -> None:
+    """A success, then the latest segment, then the most of it, then the first in order."""
+    early, late = (Cause.JOINT_LIMIT, 1, 0), (Cause.UNREACHABLE, 4, -1)
+    table = outcomes(
+        [
+            [late, GOOD, GOOD],
+            [early, late, HIT],
+            [late, early, UNTRIED],
+            [FAR, LIMIT, (Cause.COLLISION, 2, -1)],
+            [UNTRIED, FAR, FAR],
+            [UNTRIED, UNTRIED, UNTRIED],
+        ]
+    )
+    np.testing.assert_array_equal(table.best_attempt, [1, 1, 0, 1, 1, -1])
+    table.fraction[1] = [1.0, 0.0, 1.0]
+    table.fraction[3] = [1.0, 0.5, 0.6]
+    table.fraction[4] = [1.0, 0.2, 0.1]
+    np.testing.assert_array_equal(table.best_attempt, [1, 1, 0, 2, 1, -1])
+    assert table.best.codes().tolist() == ["0:0", "5:n", "5:n", "3:c", "1:n", "-"]
+    assert table.best.fraction[3] == np.float32(0.6)
+    assert int(table[1].best_attempt) == 1
+    none = table[:, :0]
+    np.testing.assert_array_equal(none.best_attempt, [-1] * 6)
+    assert none.best.codes().tolist() == ["-"] * 6
+
+
+def test_other_outcomes_are_put_into_a_copy() -> None:
+    table = outcomes([[GOOD, LIMIT], [GOOD, FAR]])
+    changed = table.replaced(([0, 1], [0, 1]), outcomes([[HIT, GOOD]])[0])
+    assert changed.codes().tolist() == [["4:c", "3:6"], ["0:0", "0:0"]]
+    assert table.codes().tolist() == [["0:0", "3:6"], ["0:0", "1:n"]]
+
+
 def test_indexing_and_concatenation() -> None:
     table = outcomes([[GOOD, LIMIT], [FAR, HIT], [UNTRIED, GOOD]])
     np.testing.assert_array_equal(table[1:].codes(), table.codes()[1:])

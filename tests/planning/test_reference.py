@@ -179,6 +179,26 @@ def test_fewer_than_six_joints_follow_what_they_can(planar: Arm) -> None:
     assert ReferencePlanner(planar, step=0.02).plan(q, lifted).outcome.cause == Cause.UNREACHABLE
 
 
+def test_a_motion_that_the_joints_do_not_have_fails_before_it_is_begun(planar: Arm) -> None:
+    """Or else a path would lead to somewhere else, as far as the joints can go."""
+    bent = np.array([0.3, 0.8, 0.4])
+    lifted = planar.pose(np.add(bent, [0.2, -0.1, 0.1]))
+    lifted[2, 3] += 0.1
+    plan = ReferencePlanner(planar).plan(bent, lifted[None])
+    assert plan.outcome.cause == Cause.UNREACHABLE
+    assert plan.outcome.fraction == 0.0
+    np.testing.assert_array_equal(plan.q, bent[None])
+
+
+def test_a_residual_within_the_tolerances_does_no_harm_even_at_the_segments_end(
+    planar: Arm,
+) -> None:
+    bent = np.array([0.3, 0.8, 0.4])
+    lifted = planar.pose(np.add(bent, [0.2, -0.1, 0.1]))
+    lifted[2, 3] += 5e-5
+    assert ReferencePlanner(planar).plan(bent, lifted[None]).success
+
+
 def test_nothing_to_do_is_success(seven: Arm) -> None:
     planner = ReferencePlanner(seven)
     none = planner.plan(MIDDLE, np.empty((0, 4, 4)))

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from drake_screw.robot import Arm, ScrewChain
-from drake_screw.screws import exp, inverse, log
+from drake_screw.screws import adjoint, exp, inverse, log
 from tests.robot.small_arms import PLANAR, SEVEN, SLIDING, JointText, arm_of, plant_of
 
 ARMS = {"7R": SEVEN, "with prismatic joints": SLIDING, "planar 3R": PLANAR}
@@ -33,6 +33,17 @@ def test_jacobian_is_the_plants_seen_from_the_origin(arm: Arm) -> None:
         np.testing.assert_allclose(J[:3], J_WE[:3], atol=1e-13)
         at_hand = J[3:] + np.cross(J[:3], X_WE[:3, 3], axis=0)
         np.testing.assert_allclose(at_hand, J_WE[3:], atol=1e-13)
+
+
+def test_motions_are_the_factors_of_pose_and_jacobian(arm: Arm) -> None:
+    rng, chain = np.random.default_rng(4), arm.screw_chain()
+    q = rng.uniform(np.maximum(arm.lower, -3.0), np.minimum(arm.upper, 3.0), (20, arm.n))
+    E = chain.motions(q)
+    assert E.shape == (arm.n, 20, 4, 4)
+    np.testing.assert_allclose(E[-1] @ chain.home, chain.pose(q), atol=1e-12)
+    before = np.concatenate([np.tile(np.eye(4), (1, 20, 1, 1)), E[:-1]])
+    J = adjoint(before) @ chain.screws[:, None, :, None]
+    np.testing.assert_allclose(np.moveaxis(J[..., 0], 0, -1), chain.jacobian(q), atol=1e-12)
 
 
 def test_jacobian_is_the_derivative_of_pose(arm: Arm) -> None:

@@ -5,18 +5,19 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from drake_screw.acquisition import Event, Finished, RoundFinished
-from drake_screw.commands.check import check
+from drake_screw.assembly.preview import preview
 from drake_screw.runs.directory import RunDirectory
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.schema import Interval, ObjectBlock, Scenario
+from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.values import Interval
+from drake_screw.scenario.workcell_blocks import ObjectBlock
 
 QUICK = ["coverage.beta=0.7", "coverage.epsilon=0.15", "seed=1"]
 ADAPTIVE = [*QUICK, "regions={adaptive: {smallest: 0.0625}}"]
@@ -58,7 +59,7 @@ def test_an_interrupted_run_resumes_to_the_same_result(whole, tmp_path) -> None:
     events = new_run(load_scenario("pouring", ADAPTIVE), tmp_path / "parts").events()
     next(event for event in events if isinstance(event, RoundFinished))
     events.close()
-    assert RunDirectory.open(tmp_path / "parts").record["status"] == "interrupted"
+    assert RunDirectory.open(tmp_path / "parts").record.status == "interrupted"
     again = rounds(open_run(tmp_path / "parts").events())
     assert len(again) == len(told)
     for one, other in zip(told, again, strict=True):
@@ -88,7 +89,8 @@ def test_a_finished_run_is_told_again_with_its_cells(whole) -> None:
 def two_objects() -> Scenario:
     """Pouring into a bowl while a cup stands at the side, which may be turned."""
     one = load_scenario("pouring", [*ADAPTIVE, "demonstrations.budget=2"])
-    bowl = replace(one.objects[0], x=Interval(0.8, 0.95), y=Interval(0.2, 0.5))
+    ranges = {"x": Interval(0.8, 0.95), "y": Interval(0.2, 0.5)}
+    bowl = one.objects[0].model_copy(update=ranges)
     cup = ObjectBlock(
         name="cup",
         x=Interval(0.7, 0.8),
@@ -98,7 +100,7 @@ def two_objects() -> Scenario:
         radius=0.04,
         height=0.08,
     )
-    return replace(one, objects=(bowl, cup))
+    return one.model_copy(update={"objects": (bowl, cup)})
 
 
 def test_a_scenario_with_two_objects_runs(tmp_path) -> None:
@@ -118,7 +120,7 @@ def test_a_scenario_with_two_objects_runs(tmp_path) -> None:
 
 
 def test_check_tells_what_adaptive_means() -> None:
-    text = check(load_scenario("pouring", ADAPTIVE))
+    text = str(preview(load_scenario("pouring", ADAPTIVE)))
     assert "adaptive: the work area is halved along its 2 axes" in text
     assert "certify_or_split" in text
     assert "in a first round where nothing fails, otherwise as many as it takes" in text

@@ -10,20 +10,21 @@ import pytest
 
 from drake_screw.acquisition import Finished, Status
 from drake_screw.bandits import Goal, coverage_bound, make_strategy
-from drake_screw.runs.certificate import certificate, statement
+from drake_screw.runs.certificate import certificate
+from drake_screw.runs.codec import plain
 
 GOAL = Goal(0.95, 0.02, 0.05)
-EARLIER = {"samples": [16, 16, 16], "verdict": {"attempted": False}}
-ATTEMPT = {"samples": [100, 100, 100], "verdict": {"attempted": True}}
+EARLIER = SimpleNamespace(samples=48, attempted=False)
+ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 
 
 def stated_by(name, mu, rounds=(), collision=False, **options):
     """Certificate of a run of three regions whose last round met failure probabilities mu."""
     bandit = make_strategy(name, GOAL, **options)
-    attempt = 1 + sum(entry["verdict"]["attempted"] for entry in rounds)
+    attempt = 1 + sum(entry.attempted for entry in rounds)
     rng = np.random.default_rng(0)
     verdict = bandit.decide(lambda counts: rng.binomial(counts, mu), 3, attempt=attempt)
-    last = {"samples": verdict.samples.tolist(), "verdict": {"attempted": verdict.attempted}}
+    instances = verdict.total_samples + sum(entry.samples for entry in rounds)
     block = SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05)
     setup = SimpleNamespace(
         scenario=SimpleNamespace(coverage=block, planner=SimpleNamespace(collision=collision)),
@@ -33,57 +34,57 @@ def stated_by(name, mu, rounds=(), collision=False, **options):
     )
     status = Status.CERTIFIED if verdict.certified else Status.INSUFFICIENT
     finished = Finished(status, "the budget is used up", verdict, ("a", "b"))
-    stated = certificate(setup, finished, [*rounds, last])
-    assert json.loads(json.dumps(stated)) == stated
-    return stated, verdict, " ".join(statement(stated, finished.reason))
+    stated = certificate(setup, finished, attempt=attempt, instances=instances)
+    assert json.loads(json.dumps(plain(stated))) == plain(stated)
+    return stated, verdict, " ".join(stated.statement)
 
 
-def test_a_certificate_of_a_run_that_spent_delta():
+def test_a_certificate_of_a_run_that_spent_delta() -> None:
     stated, verdict, text = stated_by("eprocess", [0.0, 0.01, 0.0], [EARLIER, ATTEMPT])
-    assert stated["certified"]
-    assert stated["coverage"] == 0.95
-    assert (stated["attempt"], stated["delta_of_attempt"]) == (2, pytest.approx(0.05 / 6))
-    assert stated["fresh_instances"] == verdict.total_samples
-    assert stated["instances_in_all_rounds"] == verdict.total_samples + 48 + 300
-    assert stated["confidence_holds_for"] == "the whole run"
+    assert stated.certified
+    assert stated.coverage == 0.95
+    assert (stated.attempt, stated.delta_of_attempt) == (2, pytest.approx(0.05 / 6))
+    assert stated.fresh_instances == verdict.total_samples
+    assert stated.instances_in_all_rounds == verdict.total_samples + 48 + 300
+    assert stated.confidence_holds_for == "the whole run"
     assert "Every region succeeds at least 0.95 of the time (confidence 0.95" in text
     assert "3 regions, with 2 demonstrations" in text
     assert "attempt 2" in text
     assert "budget" not in text
 
 
-def test_whether_collisions_count_is_said():
+def test_whether_collisions_count_is_said() -> None:
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0])
-    assert not stated["collisions_checked"]
+    assert not stated.collisions_checked
     assert "within the joint limits of the robot's model; collisions do not count." in text
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], collision=True)
-    assert stated["collisions_checked"]
+    assert stated.collisions_checked
     assert "that touches nothing." in text
 
 
-def test_the_papers_reading_is_labelled():
+def test_the_papers_reading_is_labelled() -> None:
     stated, _, text = stated_by("naive_pac", [0.0, 0.01, 0.0], [ATTEMPT])
-    assert not stated["delta_spent_over_attempts"]
-    assert stated["delta_of_attempt"] == 0.05
-    assert stated["confidence_holds_for"] == "each round"
+    assert not stated.delta_spent_over_attempts
+    assert stated.delta_of_attempt == 0.05
+    assert stated.confidence_holds_for == "each round"
     assert "for this round" in text
     assert "not spent" in text
     spent, _, text = stated_by("naive_pac", [0.0, 0.01, 0.0], [ATTEMPT], spend=True)
-    assert spent["delta_of_attempt"] == pytest.approx(0.05 / 6)
+    assert spent.delta_of_attempt == pytest.approx(0.05 / 6)
     assert "not spent" not in text
 
 
-def test_a_run_without_a_certificate_says_what_it_has_shown():
+def test_a_run_without_a_certificate_says_what_it_has_shown() -> None:
     stated, verdict, text = stated_by("eprocess", [0.0, 0.3, 0.0], [ATTEMPT])
-    assert not stated["certified"]
+    assert not stated.certified
     shown = coverage_bound(verdict.samples, verdict.failures, 0.05 / 6)
-    assert stated["coverage"] == verdict.coverage == pytest.approx(shown)
+    assert stated.coverage == verdict.coverage == pytest.approx(shown)
     assert 0.0 < shown < 0.7
     assert text.startswith("The budget is used up. Shown so far: every region succeeds at least")
     assert f"beta' = {shown:.4f}" in text
 
 
-def test_a_run_that_never_began_states_nothing():
+def test_a_run_that_never_began_states_nothing() -> None:
     bandit = make_strategy("eprocess", GOAL)
     setup = SimpleNamespace(
         scenario=SimpleNamespace(
@@ -95,6 +96,6 @@ def test_a_run_that_never_began_states_nothing():
         regions=SimpleNamespace(K=3),
     )
     finished = Finished(Status.INSUFFICIENT, "no initial demonstration", None, ())
-    stated = certificate(setup, finished, [])
-    assert "claim" not in stated
-    assert statement(stated, finished.reason) == ["No initial demonstration."]
+    stated = certificate(setup, finished)
+    assert "claim" not in plain(stated)
+    assert stated.statement == ("No initial demonstration.",)

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import Suggestion
-from drake_screw.commands.export import export
-from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
+from drake_screw.errors import DrakeScrewError, PluginError, RunDirectoryError, ScenarioError
 from drake_screw.runs.executions import execute, known_demonstrations, placed
 from drake_screw.runs.run import new_run, open_run
+from drake_screw.runs.trajectory import write_trajectory
 from drake_screw.scenario.loader import load_scenario
 
 PLACE = (0.85, 0.3)
@@ -43,12 +43,12 @@ def run(tmp_path_factory) -> Path:
 def executed(run) -> tuple[str, Path, dict[str, bytes]]:
     """The summary of an execution, its folder, and the run's files before it."""
     before = contents(run)
-    text = execute(run, instance=PLACE, workers=1)
+    text = str(execute(run, instance=PLACE, workers=1))
     (folder,) = (run / "executions").iterdir()
     return text, folder, before
 
 
-def test_an_instance_is_executed_and_reported(executed):
+def test_an_instance_is_executed_and_reported(executed) -> None:
     text, folder, _ = executed
     assert "1 instances, 1 executed" in text
     assert "done                       1 of 1" in text
@@ -68,87 +68,87 @@ def test_an_instance_is_executed_and_reported(executed):
     assert float(row["final_mrad"]) < 10.0
 
 
-def test_the_runs_own_files_stay_as_they_are(run, executed):
+def test_the_runs_own_files_stay_as_they_are(run, executed) -> None:
     _, _, before = executed
     after = contents(run)
     assert {name: after[name] for name in before} == before
     assert all(name.startswith("executions/") for name in after.keys() - before.keys())
 
 
-def test_fresh_instances_are_drawn_until_enough_are_executed(run, executed):
+def test_fresh_instances_are_drawn_until_enough_are_executed(run, executed) -> None:
     """The one demonstration does not solve the whole area; what it does not is told."""
-    text = execute(run, per_region=1, workers=1)
+    text = str(execute(run, per_region=1, workers=1))
     first = text.splitlines()[0]
     drawn, done = int(first.split()[0]), int(first.split()[2])
     assert done == 1
     assert text.count("no plan: ") == drawn - done
 
 
-def test_an_instance_without_a_plan_is_told_with_its_reason(run):
-    text = execute(run, instance=OUTSIDE, workers=1)
+def test_an_instance_without_a_plan_is_told_with_its_reason(run) -> None:
+    text = str(execute(run, instance=OUTSIDE, workers=1))
     assert "1 instances, 0 executed" in text
     assert "no plan: with shown, " in text
     assert "segment" in text
 
 
 @pytest.mark.parametrize("format", ["baxter-csv", "ros-trajectory", "npz"])
-def test_a_plan_is_exported(run, tmp_path, format):
+def test_a_plan_is_exported(run, tmp_path, format) -> None:
     file = tmp_path / "plan"
-    text = export(run, PLACE, format, file)
+    text = str(write_trajectory(run, PLACE, format, file))
     assert text.startswith("planned with shown: ")
     assert text.endswith(f"written to {file}")
     assert file.stat().st_size > 1000
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_exports_start_where_the_scenario_does(run, tmp_path):
-    export(run, PLACE, "npz", tmp_path / "plan.npz")
+def test_exports_start_where_the_scenario_does(run, tmp_path) -> None:
+    write_trajectory(run, PLACE, "npz", tmp_path / "plan.npz")
     with np.load(tmp_path / "plan.npz") as data:
         np.testing.assert_allclose(data["q"][0], open_run(run).setup.workcell.start)
         assert data["t"][-1] > 1.0
 
 
-def test_an_export_where_there_is_no_plan_says_why(run, tmp_path):
+def test_an_export_where_there_is_no_plan_says_why(run, tmp_path) -> None:
     with pytest.raises(ScenarioError, match="no demonstration of this run gives a plan there"):
-        export(run, OUTSIDE, "npz", tmp_path / "plan.npz")
+        write_trajectory(run, OUTSIDE, "npz", tmp_path / "plan.npz")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_unknown_format_names_those_there_are(run, tmp_path):
-    with pytest.raises(ScenarioError, match="Did you mean 'baxter-csv'") as error:
-        export(run, PLACE, "baxter_csv", tmp_path / "plan")
+def test_an_unknown_format_names_those_there_are(run, tmp_path) -> None:
+    with pytest.raises(PluginError, match="Did you mean 'baxter-csv'") as error:
+        write_trajectory(run, PLACE, "baxter_csv", tmp_path / "plan")
     assert "ros-trajectory" in str(error.value)
 
 
-def test_an_export_into_nowhere_is_refused(run, tmp_path):
+def test_an_export_into_nowhere_is_refused(run, tmp_path) -> None:
     with pytest.raises(RunDirectoryError, match="cannot be written"):
-        export(run, PLACE, "npz", tmp_path / "missing" / "plan.npz")
+        write_trajectory(run, PLACE, "npz", tmp_path / "missing" / "plan.npz")
 
 
 @pytest.mark.parametrize("numbers", [(), (0.8,), (0.8, 0.1, 0.0, 1.0), (0.8, float("nan"))])
-def test_an_instance_takes_two_or_three_numbers(run, numbers):
+def test_an_instance_takes_two_or_three_numbers(run, numbers) -> None:
     with pytest.raises(ScenarioError, match="Give x and y in m"):
         placed(open_run(run).setup, numbers)
 
 
-def test_an_instance_may_have_a_yaw(run):
+def test_an_instance_may_have_a_yaw(run) -> None:
     setup = open_run(run).setup
     np.testing.assert_array_equal(placed(setup, (0.8, 0.1)), [[0.8, 0.1, 0.0]])
     np.testing.assert_array_equal(placed(setup, (0.8, 0.1, 0.5)), [[0.8, 0.1, 0.5]])
 
 
-def test_known_demonstrations_have_the_runs_names(run):
+def test_known_demonstrations_have_the_runs_names(run) -> None:
     (demonstration,) = known_demonstrations(open_run(run))
     assert demonstration.name == "shown"
 
 
-def test_a_run_without_demonstrations_says_so(tmp_path):
+def test_a_run_without_demonstrations_says_so(tmp_path) -> None:
     run = new_run(load_scenario("pouring"), tmp_path / "run").directory.path
     with pytest.raises(RunDirectoryError, match="no demonstrations yet"):
         execute(run)
     assert not (run / "executions").exists()
 
 
-def test_what_is_no_run_is_refused(tmp_path):
+def test_what_is_no_run_is_refused(tmp_path) -> None:
     with pytest.raises(DrakeScrewError, match="not a run directory"):
         execute(tmp_path)

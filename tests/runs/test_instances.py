@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import csv
+import io
+
 import numpy as np
 import pytest
 
@@ -19,13 +22,13 @@ def write(tmp_path, text):
     return file
 
 
-def test_columns_are_found_by_name_in_any_order(tmp_path):
+def test_columns_are_found_by_name_in_any_order(tmp_path) -> None:
     file = write(tmp_path, "note,y,x\na,0.1,0.6\n\nb,0.2,0.7\n")
     expected = [[[0.6, 0.1, 0.25]], [[0.7, 0.2, 0.25]]]
     assert np.array_equal(read_instances(file, ONE), expected)
 
 
-def test_several_objects_have_their_own_columns(tmp_path):
+def test_several_objects_have_their_own_columns(tmp_path) -> None:
     file = write(tmp_path, "bowl.x,bowl.y,cup.x,cup.y,cup.yaw\n0.6,0.1,0.8,-0.1,0.5\n")
     expected = [[[0.6, 0.1, 0.25], [0.8, -0.1, 0.5]]]
     assert np.array_equal(read_instances(file, TWO), expected)
@@ -42,19 +45,19 @@ def test_several_objects_have_their_own_columns(tmp_path):
         ("x,y\n", "no instances", None),
     ],
 )
-def test_bad_tables_are_refused_with_their_place(tmp_path, text, message, line):
+def test_bad_tables_are_refused_with_their_place(tmp_path, text, message, line) -> None:
     file = write(tmp_path, text)
     with pytest.raises(ScenarioError, match=message) as error:
         read_instances(file, ONE)
     assert (error.value.file, error.value.line) == (file, line)
 
 
-def test_a_missing_table(tmp_path):
+def test_a_missing_table(tmp_path) -> None:
     with pytest.raises(ScenarioError, match="No such file"):
         read_instances(tmp_path / "none.csv", ONE)
 
 
-def test_outcomes_are_written_as_codes():
+def test_outcomes_are_written_as_codes() -> None:
     outcomes = Outcomes(
         np.array([[Cause.SUCCESS, Cause.JOINT_LIMIT], [Cause.UNREACHABLE, Cause.COLLISION]], "u1"),
         np.array([[-1, 2], [0, 1]], "i2"),
@@ -66,3 +69,16 @@ def test_outcomes_are_written_as_codes():
     assert text == "x,y,a,b\n0.6,0.1,0:0,3:5\n0.7,0.2,1:n,2:c\n"
     x_y_yaw[1, 0, 2] = 0.5
     assert outcomes_csv(x_y_yaw, outcomes, ["a", "b"], ONE).startswith("x,y,yaw,a,b\n")
+
+
+def test_names_with_commas_stay_in_their_column() -> None:
+    outcomes = Outcomes(
+        np.array([[Cause.SUCCESS, Cause.UNREACHABLE]], "u1"),
+        np.array([[-1, 0]], "i2"),
+        np.full((1, 2), -1, "i1"),
+        np.ones((1, 2), "f4"),
+    )
+    names = ["demo, second try", 'the "good" one']
+    text = outcomes_csv(np.array([[[0.6, 0.1, 0.25]]]), outcomes, names, ONE)
+    (row,) = csv.DictReader(io.StringIO(text))
+    assert row == {"x": "0.6", "y": "0.1", names[0]: "0:0", names[1]: "1:n"}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from drake_screw.acquisition import Finished
-from drake_screw.commands.check import check
+from drake_screw.assembly.preview import preview
 from drake_screw.errors import ModelError
 from drake_screw.runs.executions import execute
 from drake_screw.runs.run import new_run
@@ -37,14 +37,14 @@ def finished(folder: Path) -> Path:
 
 
 def test_the_check_tells_of_arm_and_recorder(folder: Path) -> None:
-    text = check(load_scenario(folder / "my_arm.yaml"))
-    assert "my_arm, 6 joints, hand 'hand', reach 1.02 m" in text
+    text = str(preview(load_scenario(folder / "my_arm.yaml")))
+    assert "my_arm, 6 joints, end effector 'hand', reach 1.02 m" in text
     assert "recordings named in the scenario would be on baxter, 7 joints" in text
     assert "note" not in text
 
 
 def test_its_plans_are_executed(finished: Path) -> None:
-    text = execute(finished, instance=[0.6, 0.1], workers=1)
+    text = str(execute(finished, instance=[0.6, 0.1], workers=1))
     assert "1 instances, 1 executed" in text
     assert re.search(r"with contact +0\n", text)
 

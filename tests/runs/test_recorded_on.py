@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
@@ -11,11 +10,9 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import Finished, RoundFinished, Suggestion
+from drake_screw.assembly.preview import preview
 from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.swap_model import swap_model
-from drake_screw.commands.check import check
-from drake_screw.commands.evaluate import evaluate
-from drake_screw.commands.export import export
 from drake_screw.demonstrations import (
     Recording,
     demonstration_from_recording,
@@ -31,8 +28,9 @@ from drake_screw.errors import (
 )
 from drake_screw.resources import find_resource
 from drake_screw.runs.executions import execute, known_demonstrations
-from drake_screw.runs.inspection import open_inspection
+from drake_screw.runs.outcome_table import tabulate_outcomes
 from drake_screw.runs.run import new_run, open_run
+from drake_screw.runs.trajectory import write_trajectory
 from drake_screw.scenario.loader import dump_scenario, load_scenario
 
 PLACES = ((0.75, 0.2), (0.8, 0.65), (0.95, 0.0))
@@ -162,9 +160,9 @@ def test_the_run_directory_keeps_the_recordings_of_the_other_robot(
         recording = read(library / demonstration.name, baxter)
         expected = demonstration_from_recording(recording, baxter.workcell.arm)
         np.testing.assert_array_equal(demonstration.X_OE, expected.X_OE)
-    inspection = open_inspection(finished)
-    tried = inspection.attempts(0, 0)[0]
-    found = inspection.outcomes(0, 0)
+    reader = open_run(finished).reader
+    tried = reader.attempts(0, 0)[0]
+    found = reader.outcomes(0, 0)
     assert tried.arm.joint_names == tuple(IIWA)
     assert (tried.failed_segment is None) == bool(found.success[0])
 
@@ -192,17 +190,17 @@ def test_plans_are_executed_and_exported_with_the_own_arm(finished: Path, tmp_pa
     )
     place = X[int(np.argmax(outcomes.any_success))][0, :2].tolist()
     before = set(finished.iterdir())
-    text = execute(finished, instance=place, workers=1)
+    text = str(execute(finished, instance=place, workers=1))
     assert "1 instances, 1 executed" in text
     assert {item.name for item in set(finished.iterdir()) - before} <= {"executions"}
-    export(finished, place, "npz", tmp_path / "plan.npz")
+    write_trajectory(finished, place, "npz", tmp_path / "plan.npz")
     with np.load(tmp_path / "plan.npz") as plan:
         assert plan["joint_names"].tolist() == IIWA
         np.testing.assert_allclose(plan["q"][0], setup.workcell.start, atol=1e-9)
-    export(finished, place, "ros-trajectory", tmp_path / "plan.yaml")
+    write_trajectory(finished, place, "ros-trajectory", tmp_path / "plan.yaml")
     assert "iiwa_joint_7" in (tmp_path / "plan.yaml").read_text()
     with pytest.raises(ScenarioError, match="baxter-csv is for Baxter, which has no joint") as e:
-        export(finished, place, "baxter-csv", tmp_path / "plan.csv")
+        write_trajectory(finished, place, "baxter-csv", tmp_path / "plan.csv")
     assert e.value.remedy == "Give --format ros-trajectory or --format npz."
     assert not (tmp_path / "plan.csv").exists()
 
@@ -212,7 +210,7 @@ def test_listed_recordings_are_of_the_other_robot_and_the_teachers_of_the_own(
 ) -> None:
     changes = [f"demonstrations.initial=[{library / 'demo_02'}]", "demonstrations.budget=2", *QUICK]
     scenario = load_scenario("pouring_iiwa", [*changes, "coverage.beta=0.8"])
-    assert "recorded   on baxter, 7 joints" in check(scenario)
+    assert "recorded   on baxter, 7 joints" in str(preview(scenario))
     for _ in new_run(scenario, tmp_path / "run").events():
         pass
     record = json.loads((tmp_path / "run" / "run.json").read_text())
@@ -228,7 +226,7 @@ def test_places_are_evaluated_with_the_other_robots_recordings(
 ) -> None:
     (tmp_path / "places.csv").write_text("x,y\n0.6,-0.1\n0.7,0.2\n")
     scenario = load_scenario("pouring_iiwa")
-    evaluate(scenario, library, tmp_path / "places.csv", tmp_path / "outcomes.csv")
+    tabulate_outcomes(scenario, library, tmp_path / "places.csv", tmp_path / "outcomes.csv")
     rows = (tmp_path / "outcomes.csv").read_text().splitlines()
     assert len(rows) == 3
     assert rows[0].endswith("demo_01,demo_02,demo_03")
@@ -265,7 +263,7 @@ def test_a_path_of_its_model_is_seen_from_the_file(tmp_path: Path) -> None:
     assert scenario.recorded_on is not None
     assert scenario.recorded_on.model == str(tmp_path / "other.sdf")
     with pytest.raises(ModelError, match=r"recorded_on: no file '.*other\.sdf'"):
-        check(scenario)
+        preview(scenario)
     assert scenario == load_scenario(tmp_path / "mine.yaml")
 
 
@@ -287,7 +285,7 @@ def test_what_is_wrong_with_the_other_robot_is_said(
 ) -> None:
     scenario = load_scenario("pouring_iiwa", [*changes, change])
     with pytest.raises(DrakeScrewError) as caught:
-        check(scenario)
+        preview(scenario)
     assert message in str(caught.value)
     assert remedy in (caught.value.remedy or "")
 
@@ -296,7 +294,7 @@ def test_recordings_of_the_own_robot_are_told_apart(library: Path) -> None:
     theirs = "recorded_on={model: iiwa14, joints: [iiwa_joint_1, iiwa_joint_2], end_effector: hand}"
     teacher = ["teacher={kind: recorded}", f"teacher.folder={library}"]
     with pytest.raises(RecordingError, match="no column 'iiwa_joint_1'") as caught:
-        check(load_scenario("pouring", [*teacher, theirs]))
+        preview(load_scenario("pouring", [*teacher, theirs]))
     assert "It is of the scenario's own robot: remove the block" in (caught.value.remedy or "")
 
 
@@ -317,7 +315,7 @@ def test_a_block_that_cannot_be_used_is_refused(block: str, message: str) -> Non
 
 def test_a_simulated_teacher_of_the_iiwa_leads_to_a_certificate(tmp_path: Path) -> None:
     scenario = load_scenario("pouring_iiwa", QUICK)
-    assert "none yet" in check(scenario)
+    assert "none yet" in str(preview(scenario))
     *_, end = new_run(scenario, tmp_path / "run").events()
     assert isinstance(end, Finished)
     assert end.status == "certified"
@@ -342,7 +340,7 @@ def test_people_who_led_baxter_teach_the_iiwa(shared: Path, tmp_path: Path) -> N
     X = run.setup.area.X_WO(rng.uniform(run.setup.area.lower, run.setup.area.upper, (2000, 1, 3)))
     served = run.setup.planner.any_success(end.demonstrations, X, run.setup.workcell.start)
     assert served.any_success.mean() >= scenario.coverage.beta
-    own = replace(scenario, recorded_on=None)
+    own = scenario.model_copy(update={"recorded_on": None})
     with pytest.raises(RecordingError, match="no column 'iiwa_joint_1'"):
         new_run(own, tmp_path / "own")
     assert not (tmp_path / "own").exists()

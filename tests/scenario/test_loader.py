@@ -2,33 +2,37 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
 from drake_screw.scenario.loader import dump_scenario, load_scenario
-from drake_screw.scenario.schema import (
-    AXES,
+from drake_screw.scenario.run_blocks import (
     AdaptiveBlock,
     CoverageBlock,
     DemonstrationsBlock,
-    Interval,
-    ObjectBlock,
     PlannerBlock,
-    RecordedOnBlock,
     RegionsBlock,
-    RobotBlock,
-    Scenario,
     SegmentationBlock,
-    TableBlock,
     TeacherBlock,
 )
+from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.values import Interval
+from drake_screw.scenario.workcell_blocks import (
+    ObjectBlock,
+    RecordedOnBlock,
+    RobotBlock,
+    TableBlock,
+)
+from drake_screw.tasks import AXES
 
 SMALL = """\
 name: small
@@ -489,6 +493,68 @@ def test_what_no_machine_can_carry_out_is_refused(override: str, message: str) -
     load_scenario("pouring", ["regions.grid={x: 64, y: 64}"])
 
 
+def test_any_path_like_names_a_file(write: Callable[..., Path]) -> None:
+    class Somewhere:
+        def __fspath__(self) -> str:
+            return str(write())
+
+    assert load_scenario(Somewhere()) == load_scenario(write())
+
+
+def test_a_teacher_of_ones_own_is_given_the_keys_that_are_not_known(
+    write: Callable[..., Path], tmp_path: Path
+) -> None:
+    file = write(("kind: simulated", "kind: my.module:Mine\n  patience: 3\n  folder: here"))
+    teacher = load_scenario(file, ["teacher.mood=good"]).teacher
+    assert teacher.kind == "my.module:Mine"
+    assert teacher.options == {"patience": 3, "mood": "good"}
+    assert (teacher.motion, teacher.folder) == ("pouring", file.parent / "here")
+    elsewhere = tmp_path / "elsewhere.yaml"
+    elsewhere.write_text(dump_scenario(load_scenario(file)))
+    assert load_scenario(elsewhere) == load_scenario(file)
+    assert load_scenario(elsewhere).teacher.options == {"patience": 3}
+
+
+@pytest.mark.parametrize(
+    ("override", "message", "remedy"),
+    [
+        ("teacher.mood=good", "teacher.mood: unknown key", "Keys of teacher: kind, motion, folder"),
+        ("teacher={kid: simulated}", "teacher.kid: unknown key", "Did you mean 'kind'?"),
+        ("teacher={kind: 'a:B', n: [1]}", "teacher.n: expected true or false or a whole", ""),
+        ("teacher.kind=:B", "teacher.kind: there is no ':B'", "or package.module:Object"),
+        ("coverage.strategy=mine", "coverage.strategy: there is no 'mine'", "module:Object"),
+    ],
+)
+def test_parts_of_ones_own_are_checked_as_far_as_they_are_known(
+    write: Callable[..., Path], override: str, message: str, remedy: str
+) -> None:
+    error = error_of(write(), override)
+    assert message in error.message
+    assert remedy in (error.remedy or "")
+
+
+def test_motion_and_strategy_may_be_ones_own(write: Callable[..., Path]) -> None:
+    overrides = ["teacher.motion=a.b:c", "coverage={strategy: 'a:B', options: {n: 1}}"]
+    scenario = load_scenario(write(), overrides)
+    assert scenario.teacher.motion == "a.b:c"
+    assert scenario.coverage.strategy == "a:B"
+
+
+def test_python_is_told_of_broken_rules_as_well() -> None:
+    with pytest.raises(ValidationError, match="the run could never stop"):
+        CoverageBlock(beta=0.99)
+    with pytest.raises(ValidationError, match="lower limit 2"):
+        ObjectBlock(name="a", x=Interval(2.0, 1.0), y=Interval(0, 0), z=0, radius=1, height=1)
+
+
+def test_loading_imports_no_drake() -> None:
+    code = (
+        "import sys; from drake_screw.scenario.loader import load_scenario; "
+        "load_scenario('pouring'); assert 'pydrake' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
 numbers = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e300, max_value=1e300)
 positive = st.floats(min_value=5e-324, max_value=1e300)
 texts = st.text(
@@ -583,7 +649,8 @@ def scenarios(draw: st.DrawFn) -> Scenario:
 def test_line_breaks_of_unicode_are_read_back(write: Callable[..., Path], tmp_path: Path) -> None:
     options = {"a\x85b": True, "\u2028": "\u2029 \n", "é": "ö"}
     scenario = load_scenario(write())
-    scenario = replace(scenario, coverage=replace(scenario.coverage, options=options))
+    coverage = scenario.coverage.model_copy(update={"options": options})
+    scenario = scenario.model_copy(update={"coverage": coverage})
     file = tmp_path / "written.yaml"
     file.write_text(dump_scenario(scenario), encoding="utf-8", newline="")
     assert load_scenario(file).coverage.options == options

@@ -3,30 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import get_args, get_type_hints
+from typing import get_args
 
 import pytest
 
 from drake_screw.assembly.setup import Setup
 from drake_screw.errors import ScenarioError
+from drake_screw.scenario.block import Block
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.scenario.reference_page import COMMAND, MINIMAL, reference_page
-from drake_screw.scenario.schema import Interval, Scenario
+from drake_screw.scenario.schema import Scenario
 
 PAGE = Path(__file__).parents[2] / "docs" / "scenario.md"
 
 
-def keys(block: type, path: str = "") -> Iterator[tuple[str, str]]:
+def keys(block: type[Block], path: str = "") -> Iterator[tuple[str, str]]:
     """Heading and key of everything a scenario may hold, by a walk of the schema's own."""
-    hints = get_type_hints(block)
-    for item in fields(block):
-        if item.metadata:
-            yield path, item.name
-            for kind in (hints[item.name], *get_args(hints[item.name])):
-                if is_dataclass(kind) and kind is not Interval:
-                    yield from keys(kind, f"{path}.{item.name}".lstrip("."))
+    for name, field in block.model_fields.items():
+        yield path, name
+        for kind in (field.annotation, *get_args(field.annotation)):
+            if isinstance(kind, type) and issubclass(kind, Block):
+                yield from keys(kind, f"{path}.{name}".lstrip("."))
 
 
 def section(heading: str) -> str:

@@ -4,28 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import FrozenInstanceError, fields, is_dataclass, replace
 from pathlib import Path
-from typing import Any, get_args, get_type_hints
+from typing import Any, get_args
 
 import pytest
+from pydantic import ValidationError
 
-from drake_screw.scenario.checks import find_problems
-from drake_screw.scenario.schema import (
-    STRATEGIES,
-    AdaptiveBlock,
+from drake_screw.bandits import STRATEGIES
+from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.problems import problems_of
+from drake_screw.scenario.run_blocks import (
     CoverageBlock,
     DemonstrationsBlock,
-    Interval,
-    ObjectBlock,
-    PlannerBlock,
-    RecordedOnBlock,
     RegionsBlock,
-    RobotBlock,
-    Scenario,
-    SegmentationBlock,
-    TableBlock,
     TeacherBlock,
+)
+from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.values import Interval
+from drake_screw.scenario.workcell_blocks import (
+    ObjectBlock,
+    RecordedOnBlock,
+    RobotBlock,
 )
 
 BOWL = ObjectBlock(
@@ -38,67 +37,85 @@ GOOD = Scenario(
     regions=RegionsBlock(grid={"x": 4}),
     teacher=TeacherBlock(kind="simulated", motion="pouring"),
 )
-CUP = replace(BOWL, name="cup", yaw=Interval(-1, 1))
+CUP = BOWL.model_copy(update={"name": "cup", "yaw": Interval(-1, 1)})
+
+Data = dict[str, Any]
 
 
-def blocks(block: type) -> Iterator[type]:
+def blocks(block: type[Block]) -> Iterator[type[Block]]:
     yield block
-    for hint in get_type_hints(block).values():
-        for inner in (hint, *get_args(hint)):
-            if is_dataclass(inner) and inner is not Interval:
+    for field in block.model_fields.values():
+        for inner in (field.annotation, *get_args(field.annotation)):
+            if isinstance(inner, type) and issubclass(inner, Block):
                 yield from blocks(inner)
+
+
+def find_problems(data: Data) -> tuple[Problem, ...]:
+    try:
+        Scenario.model_validate(data)
+    except ValidationError as error:
+        return tuple(problems_of(error, data))
+    return ()
 
 
 def test_every_key_is_described_and_every_block_frozen() -> None:
     found = list(blocks(Scenario))
     assert len(found) == 12
     for block in found:
-        for item in fields(block):
-            if item.name == "source":
-                assert not item.metadata
-                continue
-            assert item.metadata["meaning"], f"{block.__name__}.{item.name}"
-            assert item.metadata["unit"] in ("", "m", "rad")
-    with pytest.raises(FrozenInstanceError):
+        for name, field in block.model_fields.items():
+            assert field.description, f"{block.__name__}.{name}"
+            extra = field.json_schema_extra
+            assert extra is None or extra in ({"unit": "m"}, {"unit": "rad"})
+        assert block.model_config["frozen"]
+    with pytest.raises(ValidationError, match="frozen"):
         GOOD.seed = 1  # type: ignore[misc]
 
 
 def test_a_good_scenario_has_no_problems() -> None:
-    assert find_problems(GOOD) == ()
+    assert find_problems(changed()) == ()
+    assert Scenario.model_validate(changed()) == GOOD
 
 
 def test_cells_are_per_object_and_axis() -> None:
     assert GOOD.cells == ((4, 1, 1),)
-    assert replace(GOOD, regions=RegionsBlock(grid={"bowl.x": 3})).cells == ((3, 1, 1),)
-    two = replace(GOOD, objects=(BOWL, CUP), regions=RegionsBlock(grid={"cup.yaw": 5, "bowl.x": 2}))
+    assert Scenario(**changed(regions={"grid": {"bowl.x": 3}})).cells == ((3, 1, 1),)
+    two = changed(objects=(BOWL, CUP), regions=RegionsBlock(grid={"cup.yaw": 5, "bowl.x": 2}))
     assert find_problems(two) == ()
-    assert two.cells == ((2, 1, 1), (1, 1, 5))
+    assert Scenario(**two).cells == ((2, 1, 1), (1, 1, 5))
 
 
 def test_adaptive_regions_start_as_one() -> None:
     assert find_problems(adaptive()) == ()
-    assert adaptive().cells == ((1, 1, 1),)
+    assert Scenario(**adaptive()).cells == ((1, 1, 1),)
 
 
 def test_source_does_not_take_part_in_comparison() -> None:
-    assert replace(GOOD, source=Path("/somewhere.yaml")) == GOOD
+    read = GOOD.read_from(Path("/somewhere.yaml"))
+    assert read.source == Path("/somewhere.yaml")
+    assert read.model_copy(update={"seed": 3}).source == read.source
+    assert read == GOOD
+    assert read != GOOD.model_copy(update={"seed": 3})
 
 
-def with_block(name: str, **values: Any) -> Scenario:
-    return replace(GOOD, **{name: replace(getattr(GOOD, name), **values)})
+def changed(**values: Any) -> Data:
+    return {**GOOD.model_dump(), **values}
 
 
-def with_object(**values: Any) -> Scenario:
-    return replace(GOOD, objects=(replace(BOWL, **values),))
+def with_block(name: str, **values: Any) -> Data:
+    return changed(**{name: {**GOOD.model_dump()[name], **values}})
 
 
-def adaptive(**values: Any) -> Scenario:
-    return replace(GOOD, regions=RegionsBlock(adaptive=AdaptiveBlock(**values)))
+def with_object(**values: Any) -> Data:
+    return changed(objects=({**BOWL.model_dump(), **values},))
 
 
-def recorded_on(**values: Any) -> Scenario:
+def adaptive(**values: Any) -> Data:
+    return changed(regions={"adaptive": values})
+
+
+def recorded_on(**values: Any) -> Data:
     block = RecordedOnBlock(model="arm", joints=("c", "d"), end_effector="hand")
-    return replace(GOOD, recorded_on=replace(block, **values))
+    return changed(recorded_on={**block.model_dump(), **values})
 
 
 def test_another_robot_may_have_made_the_recordings() -> None:
@@ -108,11 +125,11 @@ def test_another_robot_may_have_made_the_recordings() -> None:
 
 
 @pytest.mark.parametrize(
-    ("scenario", "path", "message", "remedy"),
+    ("data", "path", "message", "remedy"),
     [
-        (replace(GOOD, name="a b"), "name", "letters, digits, - and _; found 'a b'", ""),
-        (replace(GOOD, name=""), "name", "letters, digits", ""),
-        (replace(GOOD, seed=-1), "seed", "expected a number of at least 0, found -1", ""),
+        (changed(name="a b"), "name", "letters, digits, - and _; found 'a b'", ""),
+        (changed(name=""), "name", "letters, digits", ""),
+        (changed(seed=-1), "seed", "expected a number of at least 0, found -1", ""),
         (with_block("robot", joints=(), start=()), "robot.joints", "at least one joint", ""),
         (with_block("robot", joints=("a", "a")), "robot.joints.1", "'a' is listed twice", ""),
         (with_block("robot", start=(0.0,)), "robot.start", "expected 2 angles", "Joints: a, b"),
@@ -126,22 +143,22 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         (recorded_on(joints=("c", "c")), "recorded_on.joints.1", "'c' is listed twice", ""),
         (recorded_on(parked={"c": 0.0}), "recorded_on.parked.c", "belongs to the arm", "leave it"),
         (
-            replace(GOOD, table=TableBlock(center=(0, 0), size=(1, 0), top=0)),
+            changed(table={"center": (0, 0), "size": (1, 0), "top": 0}),
             "table.size.1",
             "expected a number above 0, found 0",
             "extent",
         ),
-        (replace(GOOD, objects=(), regions=RegionsBlock(grid={})), "objects", "at least one", ""),
+        (changed(objects=(), regions=RegionsBlock(grid={})), "objects", "at least one", ""),
         (
-            replace(GOOD, objects=(BOWL, BOWL), regions=RegionsBlock(grid={})),
+            changed(objects=(BOWL, BOWL), regions=RegionsBlock(grid={})),
             "objects.1.name",
             "another object named 'bowl'",
             "",
         ),
         (with_object(name="b.x"), "objects.0.name", "letters, digits, - and _", ""),
-        (with_object(x=Interval(1.0, 0.5)), "objects.0.x", "lower limit 1.0 lies above", "single"),
-        (with_object(x=Interval(-1.7e308, 1.7e308)), "objects.0.x", "too wide", ""),
-        (with_object(yaw=Interval(-180, 180)), "objects.0.yaw", "wider than a full turn", "rad"),
+        (with_object(x=(1.0, 0.5)), "objects.0.x", "lower limit 1.0 lies above", "single"),
+        (with_object(x=(-1.7e308, 1.7e308)), "objects.0.x", "too wide", ""),
+        (with_object(yaw=(-180, 180)), "objects.0.yaw", "wider than a full turn", "rad"),
         (with_object(radius=0.0), "objects.0.radius", "above 0, found 0.0", "radius"),
         (with_object(height=-1.0), "objects.0.height", "above 0, found -1.0", "height"),
         (with_block("regions", grid={"x": 0}), "regions.grid.x", "at least 1, found 0", ""),
@@ -149,14 +166,14 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         (with_block("regions", grid={"y": 2}), "regions.grid.y", "y of 'bowl' is fixed", "range"),
         (with_block("regions", grid={"x": 2, "bowl.x": 2}), "regions.grid.bowl.x", "twice", ""),
         (
-            replace(GOOD, objects=(BOWL, CUP)),
+            changed(objects=(BOWL, CUP)),
             "regions.grid.x",
             "'x' is an axis of every object",
             "Axes: bowl.x, bowl.y, bowl.yaw, cup.x",
         ),
         (with_block("regions", grid=None), "regions", "grid or adaptive, found neither", "{x: 4"),
         (
-            with_block("regions", adaptive=AdaptiveBlock()),
+            with_block("regions", adaptive={}),
             "regions",
             "found grid and adaptive",
             "`adaptive: {}`",
@@ -165,13 +182,13 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         (adaptive(smallest=1e-10), "regions.adaptive.smallest", "of at least 1e-09", ""),
         (adaptive(level=0.0), "regions.adaptive.level", "above 0 and below 1", "noticed"),
         (
-            replace(adaptive(), objects=(replace(BOWL, x=Interval(1, 1)),)),
+            {**adaptive(), "objects": ({**BOWL.model_dump(), "x": 1},)},
             "regions.adaptive",
             "nothing to split",
             "range",
         ),
         (
-            replace(adaptive(), coverage=CoverageBlock(options={"spend": False})),
+            {**adaptive(), "coverage": CoverageBlock(options={"spend": False})},
             "coverage.options",
             "strategy of their own",
             "regions.adaptive",
@@ -211,37 +228,37 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         (with_block("teacher", motion=None), "teacher.motion", "missing; a simulated", ""),
         (with_block("teacher", folder=Path("/a")), "teacher.folder", "has no folder", ""),
         (
-            replace(GOOD, teacher=TeacherBlock(kind="recorded")),
+            changed(teacher={"kind": "recorded"}),
             "teacher.folder",
             "missing; a recorded teacher needs it",
             "",
         ),
         (
-            replace(GOOD, segmentation=SegmentationBlock(region_of_interest=0.9)),
+            changed(segmentation={"region_of_interest": 0.9}),
             "segmentation.region_of_interest",
             "of at least 1",
             "",
         ),
         (
-            replace(GOOD, planner=PlannerBlock(tolerance=0.0)),
+            changed(planner={"tolerance": 0.0}),
             "planner.tolerance",
             "at least 1e-09",
             "",
         ),
     ],
 )
-def test_rules(scenario: Scenario, path: str, message: str, remedy: str) -> None:
-    (problem,) = find_problems(scenario)
+def test_rules(data: Data, path: str, message: str, remedy: str) -> None:
+    (problem,) = find_problems(data)
     assert problem.path == path
     assert message in problem.message
     assert remedy in (problem.remedy or "")
 
 
 def test_several_problems_are_all_found() -> None:
-    scenario = replace(
-        GOOD, seed=-1, coverage=CoverageBlock(delta=2.0), objects=(replace(BOWL, radius=-1.0),)
+    data = changed(
+        seed=-1, coverage={"delta": 2.0}, objects=({**BOWL.model_dump(), "radius": -1.0},)
     )
-    assert {p.path for p in find_problems(scenario)} == {
+    assert {p.path for p in find_problems(data)} == {
         "objects.0.radius",
         "coverage.delta",
         "seed",
@@ -256,6 +273,4 @@ def test_every_strategy_is_accepted(strategy: str) -> None:
 def test_limits_that_are_just_met_are_accepted() -> None:
     assert find_problems(with_object(yaw=Interval(-math.pi, math.pi))) == ()
     assert find_problems(with_block("coverage", epsilon=0.0499)) == ()
-    assert (
-        find_problems(replace(GOOD, demonstrations=DemonstrationsBlock(initial=3, budget=3))) == ()
-    )
+    assert find_problems(changed(demonstrations=DemonstrationsBlock(initial=3, budget=3))) == ()

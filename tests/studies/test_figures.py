@@ -10,14 +10,13 @@ from matplotlib.figure import Figure
 
 from drake_screw.studies.figures import (
     Distribution,
+    comparison_figure,
     distributions_figure,
     draw_distribution,
-    comparison_figure,
-    save_distributions,
     save_comparison,
+    save_distributions,
 )
 from drake_screw.tasks import WorkArea, grid_regions
-
 from tests.visualization.conftest import BOWL
 
 FOUND = Distribution((3, 3, 2, 5, 3, 2), without=2)
@@ -29,7 +28,7 @@ def texts(figure: Figure) -> str:
     )
 
 
-def test_a_distribution_counts_certified_runs_and_keeps_the_others_in_mind():
+def test_a_distribution_counts_certified_runs_and_keeps_the_others_in_mind() -> None:
     assert FOUND.runs == 8
     assert FOUND.counts == {2: 2, 3: 3, 5: 1}
     assert (FOUND.mean, FOUND.most) == (3.0, 5)
@@ -38,7 +37,7 @@ def test_a_distribution_counts_certified_runs_and_keeps_the_others_in_mind():
     assert math.isnan(nothing.mean)
 
 
-def test_bars_are_shares_of_all_runs():
+def test_bars_are_shares_of_all_runs() -> None:
     ax = Figure().add_subplot()
     draw_distribution(ax, FOUND)
     bars = {bar.get_x() + bar.get_width() / 2: bar.get_height() for bar in ax.patches}
@@ -50,7 +49,7 @@ def test_bars_are_shares_of_all_runs():
     assert "2 not certified" in written
 
 
-def test_one_panel_for_each_K_on_one_scale():
+def test_one_panel_for_each_K_on_one_scale() -> None:
     figure = distributions_figure({1: FOUND, 16: Distribution((9,))}, scenario="pouring")
     axes = figure.get_axes()
     assert [ax.get_ylabel() for ax in axes] == ["K = 1", "K = 16"]
@@ -59,7 +58,7 @@ def test_one_panel_for_each_K_on_one_scale():
     assert "pouring: 1 to 8 runs" in figure.get_suptitle()
 
 
-def test_a_study_in_which_nothing_was_certified_can_be_drawn():
+def test_a_study_in_which_nothing_was_certified_can_be_drawn() -> None:
     figure = distributions_figure({4: Distribution((), without=3)})
     figure.draw_without_rendering()
     assert "3 not certified" in texts(figure)
@@ -73,7 +72,7 @@ def pair(make_round):
     return rounds, (coarse, fine)
 
 
-def test_a_hidden_failure_is_seen_beside_the_whole(pair):
+def test_a_hidden_failure_is_seen_beside_the_whole(pair) -> None:
     rounds, regions = pair
     figure = comparison_figure(rounds, regions, scenario="pouring", note="17 of 20 runs")
     left, right, _ = figure.get_axes()
@@ -86,7 +85,7 @@ def test_a_hidden_failure_is_seen_beside_the_whole(pair):
     assert np.allclose(left.get_xlim(), right.get_xlim())
 
 
-def test_files_are_the_same_bytes_every_time(pair, tmp_path):
+def test_files_are_the_same_bytes_every_time(pair, tmp_path) -> None:
     for name in ("a", "b"):
         save_distributions({1: FOUND}, tmp_path / f"d_{name}", scenario="s")
         save_comparison(*pair, tmp_path / f"p_{name}", scenario="s")

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from drake_screw.acquisition import Finished, RoundFinished, Suggestion, acquire
 from drake_screw.assembly.setup import Setup
-from drake_screw.commands.study import show_study
+from drake_screw.commands.study_console import show_study
 from drake_screw.demonstrations import write_recording
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.scenario.loader import load_scenario
@@ -66,19 +66,19 @@ def rows(file: Path) -> list[dict[str, str]]:
     ("K", "counts"),
     [(1, (1, 1)), (2, (1, 2)), (4, (2, 2)), (8, (2, 4)), (16, (4, 4)), (6, (2, 3)), (7, (1, 7))],
 )
-def test_factors_go_to_the_axes_in_turn_the_longest_first(K, counts):
+def test_factors_go_to_the_axes_in_turn_the_longest_first(K, counts) -> None:
     regions = split(TABLE, K)
     assert regions.K == K
     assert tuple(regions.counts[0]) == (*counts, 1)
 
 
-def test_yaws_are_split_last_and_fixed_axes_never():
+def test_yaws_are_split_last_and_fixed_axes_never() -> None:
     cup = ObjectArea("cup", (0.5, 0.0, -3.0), (0.5, 0.3, 3.0), 0.0)
     regions = split(WorkArea((*TABLE.objects, cup)), 16)
     assert regions.counts.tolist() == [[2, 2, 1], [1, 2, 2]]
 
 
-def test_a_work_area_without_room_cannot_be_split():
+def test_a_work_area_without_room_cannot_be_split() -> None:
     fixed = WorkArea((ObjectArea("bowl", (1.0, 0.0, 0.0), (1.0, 0.0, 0.0), 0.0),))
     assert split(fixed, 1).K == 1
     for area, K in ((fixed, 2), (TABLE, 0), (TABLE, -4)):
@@ -86,12 +86,12 @@ def test_a_work_area_without_room_cannot_be_split():
             split(area, K)
 
 
-def test_every_run_has_a_seed_of_its_own():
+def test_every_run_has_a_seed_of_its_own() -> None:
     seeds = {run_seed(s, K, i) for s in (0, 1) for K in (0, 1, 2, 16) for i in range(50)}
     assert len(seeds) == 2 * 4 * 50
 
 
-def test_a_run_of_a_study_is_the_ordinary_run_with_its_seed_and_grid(scenario):
+def test_a_run_of_a_study_is_the_ordinary_run_with_its_seed_and_grid(scenario) -> None:
     kept = Experiment(scenario).run(4, 1)
     changes = ["coverage.beta=0.7", "coverage.epsilon=0.15", "regions={grid: {x: 2, y: 2}}"]
     changes += ["teacher={kind: recorded}", f"teacher.folder={scenario.teacher.folder}"]
@@ -115,7 +115,7 @@ def test_a_run_of_a_study_is_the_ordinary_run_with_its_seed_and_grid(scenario):
     assert kept.samples == sum(e.verdict.total_samples for e in rounds)
 
 
-def test_what_a_study_leaves(finished):
+def test_what_a_study_leaves(finished) -> None:
     table = rows(finished.path / RUNS)
     places = [(int(row["K"]), int(row["run"])) for row in table]
     assert places == [(K, i) for K in REGIONS for i in range(COUNT)]
@@ -140,7 +140,7 @@ def test_what_a_study_leaves(finished):
     assert not list(finished.path.glob(".*.part"))
 
 
-def test_an_interrupted_study_resumes_to_the_same_result(scenario, finished, tmp_path):
+def test_an_interrupted_study_resumes_to_the_same_result(scenario, finished, tmp_path) -> None:
     path = tmp_path / "parts"
     running = new_study(scenario, REGIONS, COUNT, path).carry_out(1)
     for _ in range(3):
@@ -158,14 +158,14 @@ def test_an_interrupted_study_resumes_to_the_same_result(scenario, finished, tmp
     assert list(open_study(path).carry_out(1)) == []
 
 
-def test_workers_make_no_difference(scenario, finished, tmp_path):
+def test_workers_make_no_difference(scenario, finished, tmp_path) -> None:
     study = new_study(scenario, REGIONS, COUNT, tmp_path / "shared")
     found = list(study.carry_out(2))
     assert sorted(found, key=lambda run: (run.K, run.run)) == list(study.finished_runs())
     assert (study.path / RUNS).read_bytes() == (finished.path / RUNS).read_bytes()
 
 
-def test_hidden_failures_are_of_the_demonstrations_that_few_regions_certified(finished):
+def test_hidden_failures_are_of_the_demonstrations_that_few_regions_certified(finished) -> None:
     runs = finished.finished_runs()
     found = find_hidden_failures(finished.experiment, runs)
     names = [run.names for run in runs if run.K == 1 and run.certified]
@@ -182,7 +182,7 @@ def test_hidden_failures_are_of_the_demonstrations_that_few_regions_certified(fi
     assert find_hidden_failures(finished.experiment, few) == ()
 
 
-def test_the_terminal_shows_every_K(finished):
+def test_the_terminal_shows_every_K(finished) -> None:
     console = Console(record=True, width=120)
     show_study(finished, console, workers=1)
     lines = console.export_text().splitlines()
@@ -192,14 +192,14 @@ def test_the_terminal_shows_every_K(finished):
     assert str(finished.path) in "".join(lines)
 
 
-def test_lists_of_regions():
+def test_lists_of_regions() -> None:
     assert numbers_of_regions("1,2, 16") == (1, 2, 16)
     for text in ("", "1,,2", "four", "1.5"):
         with pytest.raises(ScenarioError, match="not a list"):
             numbers_of_regions(text)
 
 
-def test_bad_requests_write_nothing(scenario, tmp_path):
+def test_bad_requests_write_nothing(scenario, tmp_path) -> None:
     for regions, runs in (((), 3), ((1,), 0), ((1, 0), 3)):
         with pytest.raises(ScenarioError):
             new_study(scenario, regions, runs, tmp_path / "none")
@@ -223,7 +223,7 @@ def test_bad_requests_write_nothing(scenario, tmp_path):
         (RUNS, "", "damaged"),
     ],
 )
-def test_damaged_studies_are_refused(scenario, tmp_path, name, text, message):
+def test_damaged_studies_are_refused(scenario, tmp_path, name, text, message) -> None:
     path = new_study(scenario, (1,), 1, tmp_path / "study").path
     if text is None:
         (path / name).unlink()
@@ -233,7 +233,7 @@ def test_damaged_studies_are_refused(scenario, tmp_path, name, text, message):
         list(open_study(path).carry_out(1))
 
 
-def test_a_study_is_not_carried_on_with_another_robot(scenario, tmp_path):
+def test_a_study_is_not_carried_on_with_another_robot(scenario, tmp_path) -> None:
     path = new_study(scenario, (1,), 1, tmp_path / "study").path
     record = json.loads((path / STUDY).read_text())
     record["hashes"]["model"] = "0" * 64

@@ -6,7 +6,7 @@ import pytest
 from drake_screw.bandits import Cell
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.tasks import BoxRegions, ObjectArea, WorkArea, box_regions, grid_regions
-from drake_screw.visualization.rounds import cells, details, headline, instance_causes, sample
+from drake_screw.visualization.rounds import cells, details, headline, sample
 from tests.visualization.conftest import BOWL
 
 
@@ -18,24 +18,22 @@ def outcomes(cause: list[list[int]], segment: list[list[int]], fraction: float =
 
 def test_an_instance_fails_as_its_best_attempt_did() -> None:
     J, U, S, N = Cause.JOINT_LIMIT, Cause.UNREACHABLE, Cause.SUCCESS, Cause.NOT_TRIED
-    found = instance_causes(
-        outcomes(
-            [[J, U], [U, J], [U, S], [N, J], [N, N]], [[3, 1], [0, 2], [4, -1], [0, 0], [0, 0]]
-        )
+    found = outcomes(
+        [[J, U], [U, J], [U, S], [N, J], [N, N]], [[3, 1], [0, 2], [4, -1], [0, 0], [0, 0]]
     )
-    assert found.tolist() == [J, J, S, J, N]
+    assert found.best.cause.tolist() == [J, J, S, J, N]
 
 
 def test_a_finished_segment_is_not_the_next_one_begun() -> None:
     J, U = Cause.JOINT_LIMIT, Cause.UNREACHABLE
     done = outcomes([[J, U]], [[1, 2]])
     done.fraction[:] = [[1.0, 0.0]]
-    assert instance_causes(done).tolist() == [U]
+    assert done.best.cause.tolist() == [U]
 
 
 def test_without_demonstrations_nothing_was_tried() -> None:
     none = outcomes([[]], [[]])
-    assert instance_causes(none).tolist() == [Cause.NOT_TRIED]
+    assert none.best.cause.tolist() == [Cause.NOT_TRIED]
 
 
 def test_samples_are_capped_stated_and_repeatable(make_round, regions) -> None:

@@ -1,4 +1,4 @@
-"""How people move over time: smooth reaches, stops, drifting aim, and a tremor of the hand."""
+"""How people move over time: smooth reaches, stops, and the drift and tremor of a hand."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.signal import butter, sosfiltfilt
 
-from drake_screw.acquisition.simulated.leading import joint_motion
+from drake_screw.acquisition.simulated.candidate_paths import damped_joint_motion
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import rotation_angle, shift, translation_distance
 from drake_screw.typing import Array
@@ -18,12 +18,12 @@ RATE = 100.0  # Hz
 SHORTEST, LONGEST = 8.6, 20.0  # s
 REACH_SPEED, TURN_SPEED = 0.22, 0.8  # m/s and rad/s, mean of a reach
 PEAK = 1.875  # times its mean is the peak speed of a minimum-jerk reach
-HASTE = 0.65  # of the joints' velocity limits is the most that people ask for
+SPEED_FRACTION = 0.65  # of the joints' velocity limits is the most that people ask for
 
 
 @dataclass(frozen=True)
-class Sway:
-    """Band-limited motion that people do not mean to make.
+class HandNoise:
+    """Band-limited noise of a hand, which people do not mean to make.
 
     Attributes:
         band: Hz.
@@ -37,7 +37,8 @@ class Sway:
 
 
 # In the recordings the hand moves by 0.6 mm (mean norm) in the band of 2 to 10 Hz.
-SWAYS = (Sway((0.05, 0.5), 0.0025, 0.010), Sway((2.0, 10.0), 0.00035, 0.0015))
+DRIFT = HandNoise((0.05, 0.5), 0.0025, 0.010)
+TREMOR = HandNoise((2.0, 10.0), 0.00035, 0.0015)
 
 
 def minimum_jerk(s: Array) -> Array:
@@ -60,9 +61,9 @@ def timed(
 
     Args:
         q: (m, n) rad or m.
-        segment: (m,) as `leading.Led` has it.
+        segment: (m,) as in `candidate_paths.CandidatePaths`.
         X_WE: (m, 4, 4) the hand along the path.
-        pauses: least and longest stop after each segment, s.
+        pauses: shortest and longest stop after each segment, s.
         speed_limits: (n,) rad/s or m/s.
         rng: for tempo, stops, and the length of pauses.
 
@@ -79,7 +80,7 @@ def timed(
         X, steps = X_WE[first : last + 1], np.abs(np.diff(q[first : last + 1], axis=0))
         way, turn = translation_distance(X[1:], X[:-1]).sum(), rotation_angle(X[1:], X[:-1]).sum()
         reaches.append(rng.uniform(0.85, 1.2) * max(way / REACH_SPEED, turn / TURN_SPEED, 0.4))
-        least.append(PEAK * len(steps) * float((steps / (HASTE * speed_limits)).max()))
+        least.append(PEAK * len(steps) * float((steps / (SPEED_FRACTION * speed_limits)).max()))
     unhurried = sum(reaches) + sum(stops)
     total = np.clip(rng.uniform(0.85, 1.35) * unhurried, rng.uniform(1.0, 1.2) * SHORTEST, LONGEST)
     tempo = total / unhurried
@@ -93,26 +94,26 @@ def timed(
     return np.asarray(path(np.concatenate(places)))
 
 
-def swayed(chain: ScrewChain, q: Array, rng: np.random.Generator) -> Array:
-    """A joint path with the sway of the hand that leads it; its first point stays.
+def with_hand_noise(chain: ScrewChain, q: Array, rng: np.random.Generator) -> Array:
+    """A joint path with the drift and tremor of the hand that leads it; its first point stays.
 
     Args:
         chain: the arm.
         q: (m, n) rad or m, at 100 Hz.
-        rng: for the sway.
+        rng: for drift and tremor.
 
     Returns:
         (m, n).
     """
     V_WE = np.zeros((len(q), 6))
-    for sway in SWAYS:
+    for part in (DRIFT, TREMOR):
         noise = sosfiltfilt(
-            butter(2, sway.band, "bandpass", fs=RATE, output="sos"),
+            butter(2, part.band, "bandpass", fs=RATE, output="sos"),
             rng.standard_normal((len(q), 6)),
             axis=0,
         )
         noise /= noise.std(axis=0)
-        V_WE += noise * np.repeat([sway.rotation, sway.position], 3)
+        V_WE += noise * np.repeat([part.rotation, part.position], 3)
     V_WE *= minimum_jerk(np.clip(np.arange(len(q)) / RATE, 0.0, 1.0))[:, None]
     V = shift(V_WE, -chain.pose(q)[:, :3, 3])
-    return q + joint_motion(chain.jacobian(q), V)
+    return q + damped_joint_motion(chain.jacobian(q), V)

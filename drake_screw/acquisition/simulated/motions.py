@@ -20,17 +20,17 @@ DEGREE = np.pi / 180.0
 
 
 @dataclass(frozen=True)
-class Habit:
+class Variation:
     """How a quantity varies from one demonstration to the next: normal, within bounds."""
 
     mean: float
-    spread: float
-    least: float = -np.inf
-    most: float = np.inf
+    deviation: float
+    lower: float = -np.inf
+    upper: float = np.inf
 
     def draw(self, rng: np.random.Generator, count: int) -> Array:
         """(count,) values."""
-        return np.clip(rng.normal(self.mean, self.spread, count), self.least, self.most)
+        return np.clip(rng.normal(self.mean, self.deviation, count), self.lower, self.upper)
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class HandPath:
         height: m, above the object's origin.
         pitch: rad, of the hand's z axis below the horizon.
         roll: rad, about the hand's z axis, from how the hand is held at the start.
-        pause: (g,) s, the least and the longest time that people stop at each key pose.
+        pause: (g,) s, the shortest and the longest time that people stop at each key pose.
         held: (c,) m, by how much the tool is held longer than usual.
     """
 
@@ -166,7 +166,7 @@ def azimuth_deviations(rng: np.random.Generator, count: int) -> Array:
     The standard deviation is 6 degrees in the recordings of scooping and 10 in those of pouring. A
     quarter is spread over 60 degrees to both sides, for places where the usual way does not work.
     """
-    usual = Habit(0.0, 9 * DEGREE, -25 * DEGREE, 25 * DEGREE).draw(rng, count)
+    usual = Variation(0.0, 9 * DEGREE, -25 * DEGREE, 25 * DEGREE).draw(rng, count)
     unusual = rng.uniform(-60 * DEGREE, 60 * DEGREE, count)
     return np.where(rng.random(count) < 0.75, usual, unusual)
 
@@ -212,7 +212,7 @@ def _roll(R: Array) -> float:
 
 
 def _drawer(rng: np.random.Generator, count: int) -> Callable[..., Array]:
-    return lambda *habit: Habit(*habit).draw(rng, count)
+    return lambda *variation: Variation(*variation).draw(rng, count)
 
 
 def _rows(*columns: Array) -> Array:

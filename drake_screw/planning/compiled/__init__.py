@@ -1,6 +1,8 @@
 """The batch planner's machinery: code written for one arm, and the lanes that run on it."""
 
 from drake_screw.planning.compiled.kernel import Kernel, Order
+from drake_screw.planning.compiled.lanes import Answers
 from drake_screw.planning.compiled.step_code import Settings
+from drake_screw.planning.compiled.trace import Trace
 
-__all__ = ["Kernel", "Order", "Settings"]
+__all__ = ["Answers", "Kernel", "Order", "Settings", "Trace"]

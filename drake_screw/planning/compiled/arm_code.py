@@ -1,192 +1,152 @@
-"""Writes the joint rates of one arm along a constant screw as straight-line code.
+"""The joint velocities of one arm along a constant screw, as expressions.
 
-The rates dq/ds = J^T (J J^T)^-1 V do not depend on the frame in which J and V are expressed. The
-axes of the middle link are taken: there the two neighbouring joint axes are constant, and the
-others are at most half an arm of rotations away. With fewer than six joints the rates are
-(J^T J)^-1 J^T V instead, the least squares fit to the motion of the hand's origin.
+The minimum-norm joint velocities dq/ds = J^T (J J^T)^-1 V do not depend on the frame in which J and
+V are expressed. The axes of the middle link are taken: there the two neighbouring joint axes are
+constant, and the others are at most half an arm of rotations away. With fewer than six joints they
+are (J^T J)^-1 J^T V instead, the least squares fit to the motion of the end effector's origin.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from drake_screw.planning.compiled.emitter import Emitter, Value, Vector
+from drake_screw.planning.compiled.expressions import Value
 from drake_screw.planning.compiled.functions import cos_sin
 from drake_screw.planning.compiled.link_frames import LinkFrames
 from drake_screw.planning.compiled.matrices import Factor, determinant
+from drake_screw.typing import Array
 
 DAMPING = 1e-14
 """Added to the diagonal of J J^T or J^T J, where J's least singular value of 0.01 (see RATE_LIMIT)
-does not feel it. An arm with more joints than directions to move in gets its least rates."""
+does not feel it. An arm with more joints than directions to move in gets the velocities of least
+norm."""
 
 DAMPING_REDUNDANT = 1e-9
 """The same for J^T J if it is always singular: rounding errors of 1e-16 are divided by it."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Pose:
-    """A frame F seen from the middle link M: its axes, and its origin p_MF, as code."""
+    """A frame F seen from the middle link M: its axes, the columns of R_MF, and its origin p_MF."""
 
-    x: Vector = (1.0, 0.0, 0.0)
-    y: Vector = (0.0, 1.0, 0.0)
-    z: Vector = (0.0, 0.0, 1.0)
-    p: Vector = (0.0, 0.0, 0.0)
+    R: Array = field(default_factory=lambda: np.eye(3).astype(object))
+    p: Array = field(default_factory=lambda: np.zeros(3).astype(object))
 
-    def turn_z(self, e: Emitter, c: Value, s: Value) -> None:
-        x, y = self.x, self.y
-        self.x = e.combine(c, x, s, y)
-        self.y = [e.sum((c, yi), (-1.0, s, xi)) for xi, yi in zip(x, y, strict=True)]
+    def turn_z(self, c: Value, s: Value) -> Pose:
+        """After a turn about its own z axis, given by cos and sin."""
+        x, y, z = self.R.T
+        return replace(self, R=np.stack([c * x + s * y, c * y - s * x, z], axis=1))
 
-    def turn_x(self, e: Emitter, c: float, s: float) -> None:
-        y, z = self.y, self.z
-        self.y = e.combine(c, y, s, z)
-        self.z = e.combine(-s, y, c, z)
+    def turn_x(self, c: Value, s: Value) -> Pose:
+        """After a turn about its own x axis, given by cos and sin."""
+        x, y, z = self.R.T
+        return replace(self, R=np.stack([x, c * y + s * z, c * z - s * y], axis=1))
 
-    def move(self, e: Emitter, x: Value, y: Value, z: Value) -> None:
-        self.p = [
-            e.sum((1.0, p), (x, a), (y, b), (z, c))
-            for p, a, b, c in zip(self.p, self.x, self.y, self.z, strict=True)
-        ]
+    def move(self, d: Array) -> Pose:
+        """After a shift by d (3,), in its own axes."""
+        return replace(self, p=self.p + self.R @ d)
 
 
-@dataclass
-class ArmCode:
-    """Code of one arm at one configuration, written into an emitter.
+@dataclass(frozen=True)
+class Kinematics:
+    """An arm at one configuration: what its joint velocities depend on.
 
     Attributes:
-        base, tip: P_0 = B and C_{n-1} in M, once `walk` is done.
-        columns: n columns of J in M's axes.
-        about: the point in M that J's columns, as twists, are about: M's origin, or with fewer than
-            six joints the hand's.
+        q: (n,) joint positions.
+        base: P_0 = B in M.
+        J: (6, n) Jacobian in M's axes, its columns twists [w; v] about `about`.
+        about: (3,) point in M: M's origin, or with fewer than six joints that of the end effector.
+        factor: of J J^T, or with fewer than six joints of J^T J; damped.
     """
 
-    frames: LinkFrames
-    e: Emitter
-    base: Pose = field(default_factory=Pose)
-    tip: Pose = field(default_factory=Pose)
-    columns: list[list[Value]] = field(default_factory=list)
-    about: Vector = (0.0, 0.0, 0.0)
+    q: Array
+    base: Pose
+    J: Array
+    about: Array
+    factor: Factor
 
-    def walk(self, q_row: int) -> None:
-        """Forward kinematics from the middle link to both ends, and the Jacobian on the way."""
-        f, e, m = self.frames, self.e, self.frames.middle
-        n = len(f.revolute)
-        columns: dict[int, list[Value]] = {}
-        for i in range(m, n):
-            columns[i] = self._column(self.tip, i)
-            self._joint(self.tip, i, q_row, 1.0)
-            if i < n - 1:
-                self.tip.turn_x(e, *map(float, f.tilt[i]))
-                self.tip.move(e, *map(float, f.shift[i]))
-        for i in range(m - 1, -1, -1):
-            c, s = map(float, f.tilt[i])
-            self.base.turn_x(e, c, -s)
-            self.base.move(e, *map(float, -f.shift[i]))
-            columns[i] = self._column(self.base, i)
-            self._joint(self.base, i, q_row, -1.0)
-        if n < 6:
-            self.about = self._hand().p
-        self.columns = [self._moved(columns[i]) for i in range(n)]
+    def to_middle(self, V: Array) -> Array:
+        """A twist (6,) in B about its origin, brought to M's axes and the point `about`."""
+        R, p = self.base.R, self.base.p
+        w = R @ V[:3]
+        return _shifted(np.concatenate([w, R @ V[3:] + np.cross(p, w)]), self.about)
 
-    def _moved(self, twist: Vector) -> list[Value]:
-        """A twist about M's origin as the twist about the point `about`."""
-        drag = self.e.cross(twist[:3], self.about)
-        return [*twist[:3], *(self.e.sum((v,), (d,)) for v, d in zip(twist[3:], drag, strict=True))]
+    def joint_velocities(self, V: Array) -> Array:
+        """dq/ds = J^+ V (n,) of a twist in M's axes about `about`."""
+        if len(self.q) < 6:
+            return self.factor.solve(self.J.T @ V)
+        return self.J.T @ self.factor.solve(V)
 
-    def _hand(self) -> Pose:
-        """C_{n-1}'s axes at the origin of E, in M."""
-        hand = Pose(self.tip.x, self.tip.y, self.tip.z, self.tip.p)
-        hand.move(self.e, *map(float, self.frames.X_CE[:3, 3]))
-        return hand
-
-    def _column(self, axis: Pose, i: int) -> list[Value]:
-        if not self.frames.revolute[i]:
-            return [0.0, 0.0, 0.0, *axis.z]
-        return [*axis.z, *self.e.cross(axis.p, axis.z)]
-
-    def _joint(self, pose: Pose, i: int, q_row: int, direction: float) -> None:
-        e, turn = self.e, float(self.frames.turn[i])
-        q = e.load(q_row + i)
-        c: Value
-        s: Value
-        if self.frames.revolute[i]:
-            c, s = cos_sin(e, e.sum((q,), (turn,)))
-        else:
-            c, s = float(np.cos(turn)), float(np.sin(turn))
-        if not self.frames.revolute[i]:
-            pose.move(e, 0.0, 0.0, e.sum((direction, q)))
-        pose.turn_z(e, c, e.sum((direction, s)))
-
-    def to_middle(self, twist: Vector) -> list[Value]:
-        """A twist in B about its origin, brought to M's axes and the point `about`."""
-        e, base = self.e, self.base
-        w_B, v_B = twist[:3], twist[3:]
-        rows = list(zip(base.x, base.y, base.z, strict=True))
-        w = [e.dot(row, w_B) for row in rows]
-        moment = e.cross(base.p, w)
-        v = [
-            e.sum(*zip(row, v_B, strict=True), (1.0, k))
-            for row, k in zip(rows, moment, strict=True)
-        ]
-        return self._moved([*w, *v])
-
-    def gram(self) -> list[list[Value]]:
-        """The lower triangle of J J^T, or with fewer than six joints of J^T J; damped."""
-        vectors = self.columns if len(self.columns) < 6 else list(zip(*self.columns, strict=True))
-        products = [
-            [list(zip(a, b, strict=True)) for b in vectors[: i + 1]] for i, a in enumerate(vectors)
-        ]
-        few = len(self.columns) < 6
-        damping = DAMPING_REDUNDANT if few and self.frames.redundant else DAMPING
-        for row in products:
-            row[-1].append((1.0, damping))
-        return [[self.e.sum(*terms) for terms in row] for row in products]
-
-    def pose_of_hand(self) -> list[Value]:
-        """X_BE as three rows of [R | p]."""
-        e, base, hand = self.e, self.base, self._hand()
-        X_CE = self.frames.X_CE
-        axes = (hand.x, hand.y, hand.z)
-        R_ME = [
-            [e.sum(*((float(X_CE[k, j]), axes[k][i]) for k in range(3))) for j in range(3)]
-            for i in range(3)
-        ]
-        p_BE_M = e.combine(1.0, hand.p, -1.0, base.p)
-        rows = []
-        for axis in (base.x, base.y, base.z):
-            rows += [e.dot(axis, [R_ME[k][j] for k in range(3)]) for j in range(3)]
-            rows.append(e.dot(axis, p_BE_M))
-        return rows
+    def residual(self, V: Array, velocities: Array) -> Value:
+        """|V - J dq/ds|^2."""
+        rest = V - self.J @ velocities
+        return rest @ rest
 
 
-def joint_rates(
-    e: Emitter, columns: list[list[Value]], factor: Factor, twist: Vector
-) -> list[Value]:
-    """J^+ twist."""
-    if len(columns) < 6:
-        return factor.solve(e, [e.dot(column, twist) for column in columns])
-    force = factor.solve(e, twist)
-    return [e.dot(column, force) for column in columns]
+def kinematics(frames: LinkFrames, q: Array) -> tuple[Kinematics, Array]:
+    """An arm at joint positions q (n,), and its X_BE as three rows (3, 4) of [R | p]."""
+    few, X_CE = len(q) < 6, frames.X_CE
+    base, links = link_poses(frames, q)
+    R_ME, p_ME = links[-1].R @ X_CE[:3, :3], links[-1].move(X_CE[:3, 3]).p
+    about = p_ME if few else np.zeros(3)
+    columns = [_twist(link, turns) for link, turns in zip(links, frames.revolute, strict=True)]
+    J = _shifted(np.stack(columns, axis=1), about)
+    gram = J.T @ J if few else J @ J.T
+    damping = DAMPING_REDUNDANT if few and frames.redundant else DAMPING
+    factor = Factor.of(gram + damping * np.eye(len(gram)))
+    X_BE = base.R.T @ np.column_stack([R_ME, p_ME - base.p])
+    return Kinematics(q, base, J, about, factor), X_BE
 
 
-def residual(e: Emitter, columns: list[list[Value]], rates: Vector, twist: Vector) -> Value:
-    """|twist - J rates|^2."""
-    rest = [
-        e.sum(
-            (1.0, v),
-            *((-1.0, column[k], rate) for column, rate in zip(columns, rates, strict=True)),
-        )
-        for k, v in enumerate(twist)
-    ]
-    return e.dot(rest, rest)
+def link_poses(frames: LinkFrames, q: Array) -> tuple[Pose, list[Pose]]:
+    """The base frame B and the frames C_0, ..., C_{n-1} of the links, seen from the middle link.
+
+    A point that is fixed to link i at p_CP is at ``links[i].move(p_CP).p`` in M.
+    """
+    n, middle = len(q), frames.middle
+    base, tip = Pose(), Pose()
+    inward, outward = [], []
+    for i in range(middle, n):
+        tip = _across(frames, tip, i, q[i], 1.0)
+        outward.append(tip)
+        if i < n - 1:
+            tip = tip.turn_x(*frames.tilt[i]).move(frames.shift[i])
+    for i in reversed(range(middle)):
+        c, s = frames.tilt[i]
+        base = base.turn_x(c, -s).move(-frames.shift[i])
+        inward.append(base)
+        base = _across(frames, base, i, q[i], -1.0)
+    return base, inward[::-1] + outward
 
 
-def orientation(e: Emitter, before: list[list[Value]], after: list[list[Value]]) -> Value:
-    """det(J_before^T J_after), of at most six joints.
+def _across(frames: LinkFrames, pose: Pose, i: int, q: Value, direction: float) -> Pose:
+    """From one side of joint i to the other: in direction 1 from P_i to C_i, in -1 back."""
+    turn = frames.turn[i]
+    if frames.revolute[i]:
+        c, s = cos_sin(q + turn)
+        return pose.turn_z(c, direction * s)
+    moved = pose.move(np.array([0.0, 0.0, direction * q]))
+    return moved.turn_z(np.cos(turn), direction * np.sin(turn))
+
+
+def _twist(link: Pose, turns: bool) -> Array:
+    """The twist (6,) about M's origin of a joint that turns about its link's z axis, or slides."""
+    z = link.R[:, 2]
+    return np.concatenate([z, np.cross(link.p, z)] if turns else [np.zeros(3), z])
+
+
+def _shifted(V: Array, p: Array) -> Array:
+    """Twists (6, ...) about another point: their linear parts are velocities at p (3,)."""
+    w = V[:3]
+    return np.concatenate([w, V[3:] + np.cross(w, p, axisa=0, axisc=0)])
+
+
+def orientation(J_before: Array, J_after: Array) -> Value:
+    """det(J_before^T J_after) of Jacobians (6, n), n <= 6.
 
     It is the inner product of the volumes that the columns span (Cauchy and Binet), which turns
     negative where a path passes through a singularity in between.
     """
-    return determinant(e, [[e.dot(a, b) for b in after] for a in before])
+    return determinant(J_before.T @ J_after)

@@ -12,6 +12,7 @@ import os
 import platform
 import sys
 import tempfile
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
@@ -20,28 +21,32 @@ import llvmlite.binding  # type: ignore[import-untyped]
 import numba
 
 from drake_screw.planning import contract, outcomes
-from drake_screw.planning.compiled import crossing, lanes, lowering, rows, step_code
+from drake_screw.planning.compiled import crossing, lanes, lowering, rows, step_code, trace
+from drake_screw.planning.compiled.expressions import Program
 from drake_screw.planning.compiled.link_frames import LinkFrames
+from drake_screw.planning.compiled.lowering import lane_code
+from drake_screw.typing import Array
 
-_SOURCES = (contract, crossing, lanes, lowering, outcomes, rows)
+_SOURCES = (contract, crossing, lanes, lowering, outcomes, rows, trace)
 """Modules that are compiled into that of an arm."""
 
-_MODULE = '''"""Plans of one arm, {lanes} at a time; written by drake_screw.planning.compiled."""
+_TEXT = '''"""Plans of one arm, on blocks of lanes; written by drake_screw.planning.compiled.
+
+The arm's programs (aim, blend_1, ...) are put in here before this text is run.
+"""
 
 from numba import njit
 
 from drake_screw.planning.compiled.lanes import begin_plan, next_unit, save_start, settle
-from drake_screw.planning.compiled.lowering import lane_code
+from drake_screw.planning.compiled.rows import LANES
 
-
-{functions}
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def prepare(b, rows, q_start, start):
     """Fills start with what `arrive` says of the start configuration (n,)."""
     for j in range(len(q_start)):
-        for i in range({lanes}):
-            b[(rows.q_stage + j) * {lanes} + i] = q_start[j]
+        for i in range(LANES):
+            b[(rows.q_stage + j) * LANES + i] = q_start[j]
     arrive(b)
     save_start(b, 0, rows, start)
 
@@ -49,39 +54,46 @@ def prepare(b, rows, q_start, start):
 @njit(cache=True, nogil=True, error_model="numpy")
 def run(b, lanes, queue, rows, problem, answers):
     """Works through the units of work in a queue."""
-    for i in range({lanes}):
+    for i in range(LANES):
         next_unit(i, lanes, queue)
         if lanes[i, 0] >= 0:
             begin_plan(b, i, lanes, rows, problem)
     while True:
         aim(b)
-{stages}        arrive(b)
+        blend_1(b)
+        rate(b)
+        blend_2(b)
+        rate(b)
+        blend_3(b)
+        rate(b)
+        blend_4(b)
+        rate(b)
+        blend_5(b)
+        rate(b)
+        blend_6(b)
+        arrive(b)
         judge(b)
         if settle(b, lanes, queue, rows, problem, answers) == 0:
             return
 '''
 
 
-def source(
-    frames: LinkFrames, lower: step_code.Vector, upper: step_code.Vector, s: step_code.Settings
-) -> tuple[str, int]:
-    """Source text of an arm's module, and the number of rows of its blocks."""
+def programs(
+    frames: LinkFrames, lower: Array, upper: Array, settings: step_code.Settings
+) -> tuple[tuple[Program, ...], int]:
+    """All programs of an arm, and the number of rows of its blocks."""
     n = len(frames.revolute)
-    arrive, aim, count = step_code.arrive_and_aim(frames, s)
-    stages = range(1, len(step_code.TABLEAU) + 1)
-    functions = [step_code.blend(n, stage) for stage in stages]
-    functions += [step_code.rate(frames), arrive, aim, step_code.judge(lower, upper, s)]
-    calls = "".join(
-        f"        blend_{k}(b)\n" + ("        rate(b)\n" if k < len(stages) else "") for k in stages
-    )
-    text = _MODULE.format(lanes=rows.LANES, functions="\n\n".join(functions), stages=calls)
-    return text, count
+    arrive, aim, count = step_code.arrive_and_aim(frames, settings)
+    blends = [step_code.blend(n, stage) for stage in range(1, len(step_code.TABLEAU) + 1)]
+    judge = step_code.judge(lower, upper, settings)
+    return (*blends, step_code.rate(frames), arrive, judge, aim), count
 
 
-def load(text: str) -> ModuleType:
-    """The module of this source text, from the cache if it was ever loaded before."""
+def load(programs: Sequence[Program]) -> ModuleType:
+    """The module that runs these programs, from the cache if it was ever loaded before."""
     parts = [
-        text,
+        _TEXT,
+        *map(str, programs),
         numba.__version__,
         platform.python_version(),
         llvmlite.binding.get_host_cpu_name(),
@@ -91,9 +103,9 @@ def load(text: str) -> ModuleType:
     if name in sys.modules:
         return sys.modules[name]
     path = _folder() / f"{name}.py"
-    if not path.exists() or path.read_text() != text:
+    if not path.exists() or path.read_text() != _TEXT:
         with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
-            file.write(text)
+            file.write(_TEXT)
         os.chmod(file.name, 0o644)
         os.replace(file.name, path)
     spec = importlib.util.spec_from_file_location(name, path)
@@ -101,6 +113,7 @@ def load(text: str) -> ModuleType:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
+    vars(module).update({program.name: lane_code(program, name) for program in programs})
     spec.loader.exec_module(module)
     return module
 

@@ -1,75 +1,67 @@
-"""cos, sin and the logarithm of SE(3) as straight-line code: polynomials, no calls, no branches."""
+"""cos, sin and the logarithm of SE(3) as expressions: polynomials, no calls, no branches."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from drake_screw.planning.compiled.emitter import Emitter, Value, Vector
-
-Array = NDArray[np.float64]
+from drake_screw.planning.compiled.expressions import Expression, floor, maximum, sqrt, where
+from drake_screw.typing import Array
 
 
-def cos_sin(e: Emitter, angle: Value) -> tuple[Value, Value]:
+def polynomial(x: Expression, coefficients: list[float]) -> Expression:
+    """Horner's scheme; coefficients from the constant term up."""
+    *rest, highest = coefficients
+    result = highest * x + rest.pop()
+    for c in reversed(rest):
+        result = result * x + c
+    return result
+
+
+def cos_sin(angle: Expression) -> tuple[Expression, Expression]:
     """cos and sin of any angle to 4e-13: polynomials on half the angle within a half turn of 0."""
-    turns = e.let(f"floor({angle} * {1.0 / (2.0 * np.pi)!r} + 0.5)")
-    half = e.let(f"0.5 * {angle} - {np.pi!r} * {turns}")
-    square = e.sum((half, half))
-    quotient = e.polynomial(str(square), _SIN)
-    sine = e.sum((half, quotient))
-    cosine = e.polynomial(str(square), _COS)
-    return e.let(f"1.0 - 2.0*{sine}*{sine}"), e.sum((2.0, sine, cosine))
+    turns = floor(angle * (1.0 / (2.0 * np.pi)) + 0.5)
+    half = 0.5 * angle - np.pi * turns
+    square = half * half
+    sine = half * polynomial(square, _SIN)
+    cosine = polynomial(square, _COS)
+    return 1.0 - 2.0 * sine * sine, 2.0 * sine * cosine
 
 
-def log_between(e: Emitter, X_BE: Vector, X_BG: Vector) -> list[Value]:
-    """The twist log(X_BG X_BE^-1), of an angle of at most pi, by way of the quaternion."""
+def log_between(X_BE: Array, X_BG: Array) -> Array:
+    """The twist log(X_BG X_BE^-1) (6,), of an angle of at most pi, by way of the quaternion.
 
-    def R(X: Vector, i: int, j: int) -> Value:
-        return X[4 * i + j]
-
-    M = [
-        [e.sum(*((R(X_BG, i, k), R(X_BE, j, k)) for k in range(3))) for j in range(3)]
-        for i in range(3)
-    ]
-    p = [
-        e.sum((X_BG[4 * i + 3],), *((-1.0, M[i][j], X_BE[4 * j + 3]) for j in range(3)))
-        for i in range(3)
-    ]
-    diagonal = [
-        e.sum((1.0,), *((1.0 if k in (0, i) else -1.0, M[k - 1][k - 1]) for k in (1, 2, 3)))
-        if i
-        else e.sum((1.0,), *((M[k][k],) for k in range(3)))
-        for i in range(4)
-    ]
-    x, y, z = (e.sum((M[k][j],), (-1.0, M[j][k])) for j, k in ((1, 2), (2, 0), (0, 1)))
-    xy, yz, zx = (e.sum((M[j][k],), (M[k][j],)) for j, k in ((0, 1), (1, 2), (2, 0)))
-    candidates = [
-        [diagonal[0], x, y, z],
-        [x, diagonal[1], xy, zx],
-        [y, xy, diagonal[2], yz],
-        [z, zx, yz, diagonal[3]],
-    ]
-    best, size = candidates[0], diagonal[0]
+    Args:
+        X_BE, X_BG: (3, 4) rows [R | p].
+    """
+    R = X_BG[:, :3] @ X_BE[:, :3].T
+    p = X_BG[:, 3] - R @ X_BE[:, 3]
+    x, y, z = (R[k, j] - R[j, k] for j, k in ((1, 2), (2, 0), (0, 1)))
+    xy, yz, zx = (R[j, k] + R[k, j] for j, k in ((0, 1), (1, 2), (2, 0)))
+    d = R.diagonal()
+    candidates = np.array(
+        [
+            [d[0] + d[1] + d[2] + 1.0, x, y, z],
+            [x, d[0] - d[1] - d[2] + 1.0, xy, zx],
+            [y, xy, d[1] - d[0] - d[2] + 1.0, yz],
+            [z, zx, yz, d[2] - d[0] - d[1] + 1.0],
+        ]
+    )
+    best, size = candidates[0], candidates[0, 0]
     for i in (1, 2, 3):
-        better = e.let(f"{diagonal[i]} > {size}")
-        best = [e.where(better, new, old) for new, old in zip(candidates[i], best, strict=True)]
-        size = e.let(f"max({diagonal[i]}, {size})")
-    sign = e.where(f"{best[0]} < 0.0", -1.0, 1.0)
-    scale = e.let(f"{sign} / sqrt({e.dot(best, best)})")
-    w, *u = (e.sum((scale, component)) for component in best)
-    sine2 = e.dot(u, u)
-    cosine = e.let(f"1.0 + {w}")
-    tangent2 = e.let(f"{sine2} / ({cosine} * {cosine})")
-    slope = e.let(f"1.0 / ({cosine} * (1.0 + sqrt(1.0 + {tangent2})))")
-    quarter2 = e.let(f"{sine2} * {slope} * {slope}")
-    angle_per_sine = e.let(f"8.0 * {slope} * {e.polynomial(quarter2, _ATAN)}")
-    turn = [e.sum((angle_per_sine, component)) for component in u]
-    bend = e.let(f"(1.0 - 0.5 * {angle_per_sine} * {w}) / ({sine2} + 1e-30)")
-    swing, twice = e.cross(turn, p), e.cross(u, e.cross(u, p))
-    v = [e.sum((p[k],), (-0.5, swing[k]), (bend, twice[k])) for k in range(3)]
-    return [*turn, *v]
+        best = where(candidates[i, i] > size, candidates[i], best)
+        size = maximum(candidates[i, i], size)
+    w, *_ = quaternion = best * (where(best[0] < 0.0, -1.0, 1.0) / sqrt(best @ best))
+    u = quaternion[1:]
+    sine2, cosine = u @ u, 1.0 + w
+    tangent2 = sine2 / (cosine * cosine)
+    slope = 1.0 / (cosine * (1.0 + sqrt(1.0 + tangent2)))
+    angle_per_sine = 8.0 * slope * polynomial(sine2 * slope * slope, _ATAN)
+    turn = angle_per_sine * u
+    bend = (1.0 - 0.5 * angle_per_sine * w) / (sine2 + 1e-30)
+    v = p - 0.5 * np.cross(turn, p) + bend * np.cross(u, np.cross(u, p))
+    return np.concatenate([turn, v])
 
 
 def fit(f: Callable[[Array], Array], degree: int, end: float) -> list[float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +15,17 @@ from drake_screw.planning.compiled.lanes import Answers, Bounds, Places, Problem
 from drake_screw.planning.compiled.link_frames import link_frames
 from drake_screw.planning.compiled.rows import LANES, Rows
 from drake_screw.planning.compiled.step_code import Settings
+from drake_screw.planning.compiled.trace import Trace, new_trace
 from drake_screw.planning.outcomes import Cause
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 CHUNK = 2048
 """Plans, about, that a thread takes at a time."""
+
+TRACED = 256
+"""Plans that a thread takes at a time where their steps are written down."""
 
 Order = Callable[[Array], NDArray[np.int64]]
 """From object poses (N, k, 4, 4) to the order (N, D) in which demonstrations are tried."""
@@ -45,10 +51,8 @@ class Kernel:
     ) -> None:
         settings = settings or Settings()
         frames = link_frames(screws, home)
-        text, self._count = arm_module.source(
-            frames, list(map(float, lower)), list(map(float, upper)), settings
-        )
-        self._module = arm_module.load(text)
+        programs, self._count = arm_module.programs(frames, lower, upper, settings)
+        self._module = arm_module.load(programs)
         rows = Rows(len(screws))
         self._rows = Places(rows.q, rows.q_stage, rows.kept, self._count)
         self._X_BW = np.linalg.inv(frames.X_WB)
@@ -73,7 +77,6 @@ class Kernel:
         order: Order | None = None,
         *,
         stop_at_success: bool = False,
-        keep_ends: bool = False,
         threads: int | None = None,
     ) -> Answers:
         """Plans for N instances with D demonstrations.
@@ -85,46 +88,89 @@ class Kernel:
             q_start: (n,) start configuration, inside the limits.
             order: in which to try the demonstrations; as given if None.
             stop_at_success: leave out the demonstrations after the first that succeeds.
-            keep_ends: fill in the answers' `end`.
             threads: to use; all processors if None.
         """
         N, D = len(X_WO), len(X_OE)
-        answers = Answers(
-            np.full((N, D), Cause.NOT_TRIED, dtype=np.uint8),
-            np.full((N, D), -1, dtype=np.int16),
-            np.full((N, D), -1, dtype=np.int8),
-            np.zeros((N, D), dtype=np.float32),
-            np.zeros((N, D), dtype=np.int32),
-            np.full((N if keep_ends else 0, D, len(q_start)), np.nan),
-        )
+        answers = _unanswered(N, D, new_trace(np.zeros(0, dtype=np.int64), len(q_start)))
         if N == 0 or D == 0:
             return answers
-        first = np.cumsum([0, *map(len, X_OE)], dtype=np.int64)
-        guides = np.concatenate(X_OE).astype(float, order="C")
-        owners = np.concatenate(objects).astype(np.int64, order="C")
-        start = self._start(q_start)
+        problem = self._problem(X_OE, objects, q_start)
         as_given = np.arange(D)[None]
         size = D if stop_at_success else 1
-        chunk = max(LANES, CHUNK // D)
 
-        def work(begin: int) -> None:
-            part = slice(begin, min(begin + chunk, N))
-            X_BO = np.ascontiguousarray(self._X_BW @ X_WO[part])
+        def work(part: slice) -> None:
             tried = as_given if order is None else np.ascontiguousarray(order(X_WO[part]))
-            problem = Problem(X_BO, guides, owners, first, tried, start, self._bounds)
-            queue = np.array([0, (part.stop - begin) * D // size, size])
-            b, lanes = (np.zeros(self._count * LANES), np.zeros((LANES, 7), dtype=np.int64))
-            self._module.run(b, lanes, queue, self._rows, problem, answers.part(part))
+            self._run(problem, X_WO[part], tried, size, answers.part(part))
 
-        chunks = range(0, N, chunk)
-        if threads == 1 or len(chunks) == 1:
-            for begin in chunks:
-                work(begin)
-        else:
-            with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-                list(pool.map(work, chunks))
+        _share(work, _parts(N, max(LANES, CHUNK // D)), threads)
         arm_module.mark_compiled(self._module)
         return answers
+
+    def trace(
+        self,
+        X_OE: Sequence[Array],
+        objects: Sequence[NDArray[np.int64]],
+        X_WO: Array,
+        q_start: Array,
+        which: NDArray[np.int64],
+        *,
+        threads: int | None = None,
+    ) -> list[Answers]:
+        """Plans for N instances, each with one demonstration, and the steps that were taken.
+
+        A first pass counts the steps and a second one writes them down: a lane's arithmetic does
+        not depend on its neighbours, so that both take the same, which are also those of `plan`.
+
+        Args:
+            X_OE, objects, X_WO, q_start, threads: as for `plan`.
+            which: (N,) the demonstration of each instance.
+
+        Returns:
+            Answers (m, 1) with the trace of their steps, for successive instances.
+        """
+        problem = self._problem(X_OE, objects, q_start)
+        tried = np.ascontiguousarray(which, dtype=np.int64)[:, None]
+
+        def work(part: slice) -> Answers:
+            places = np.zeros(part.stop - part.start, dtype=np.int64)
+            for _ in range(2):
+                trace = new_trace(places, len(q_start))
+                answers = _unanswered(len(places), len(X_OE), trace)
+                self._run(problem, X_WO[part], tried[part], 1, answers)
+                places = trace.steps
+            return answers.part((np.arange(len(places))[:, None], tried[part]))
+
+        traced = _share(work, _parts(len(X_WO), TRACED), threads)
+        arm_module.mark_compiled(self._module)
+        return traced
+
+    def _problem(
+        self, X_OE: Sequence[Array], objects: Sequence[NDArray[np.int64]], q_start: Array
+    ) -> Problem:
+        """The part of a problem that all instances have in common; X_BO and order are empty."""
+        return Problem(
+            np.empty((0, 0, 4, 4)),
+            np.concatenate(X_OE).astype(float, order="C"),
+            np.concatenate(objects).astype(np.int64, order="C"),
+            np.cumsum([0, *map(len, X_OE)], dtype=np.int64),
+            np.empty((0, 0), dtype=np.int64),
+            self._start(q_start),
+            self._bounds,
+        )
+
+    def _run(
+        self,
+        problem: Problem,
+        X_WO: Array,
+        order: NDArray[np.int64],
+        size: int,
+        answers: Answers,
+    ) -> None:
+        """Fill in answers for instances, in units of so many demonstrations."""
+        problem = problem._replace(X_BO=np.ascontiguousarray(self._X_BW @ X_WO), order=order)
+        queue = np.array([0, len(X_WO) * order.shape[1] // size, size])
+        b, lanes = np.zeros(self._count * LANES), np.zeros((LANES, 7), dtype=np.int64)
+        self._module.run(b, lanes, queue, self._rows, problem, answers)
 
     def _start(self, q_start: Array) -> Array:
         """What lanes load to start a plan: see `lanes.load_start`."""
@@ -132,3 +178,27 @@ class Kernel:
         b = np.zeros(self._count * LANES)
         self._module.prepare(b, self._rows, np.array(q_start, dtype=float), start)
         return start
+
+
+def _unanswered(N: int, D: int, trace: Trace) -> Answers:
+    """Answers of which none is given yet."""
+    return Answers(
+        np.full((N, D), Cause.NOT_TRIED, dtype=np.uint8),
+        np.full((N, D), -1, dtype=np.int16),
+        np.full((N, D), -1, dtype=np.int8),
+        np.zeros((N, D), dtype=np.float32),
+        np.zeros((N, D), dtype=np.int32),
+        trace,
+    )
+
+
+def _parts(N: int, size: int) -> list[slice]:
+    return [slice(begin, min(begin + size, N)) for begin in range(0, N, size)]
+
+
+def _share(work: Callable[[slice], T], parts: Sequence[slice], threads: int | None) -> list[T]:
+    """Work on parts, shared out among threads; what comes of each, in order."""
+    if threads == 1 or len(parts) == 1:
+        return [work(part) for part in parts]
+    with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+        return list(pool.map(work, parts))

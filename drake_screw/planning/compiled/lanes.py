@@ -5,7 +5,7 @@ Compiled as part of the code of an arm (kernel.py), and not on its own.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit, uintp
@@ -18,6 +18,7 @@ from drake_screw.planning.compiled.rows import (
     EVENT,
     HAND,
     LANES,
+    MARGIN,
     NEXT_STEP,
     OFF_PLACE,
     OFF_TURN,
@@ -26,11 +27,11 @@ from drake_screw.planning.compiled.rows import (
     RATE_END,
     RATE_START,
     RESIDUAL,
-    ROOM,
     STEP,
     TARGET,
     at,
 )
+from drake_screw.planning.compiled.trace import Trace, end_trace, trace_step
 from drake_screw.planning.contract import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from drake_screw.planning.outcomes import Cause
 
@@ -91,25 +92,24 @@ class Places(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """(N, D) arrays, by instance and demonstration, and `end`, (N, D, n), the configuration at the
-    end of each success, or (0, D, n) if it is not asked for."""
+    """(N, D) arrays, by instance and demonstration, and the trace of the steps."""
 
     cause: NDArray[np.uint8]
     segment: NDArray[np.int16]
     joint: NDArray[np.int8]
     fraction: NDArray[np.float32]
     steps: NDArray[np.int32]
-    end: Array
+    trace: Trace
 
-    def part(self, instances: slice) -> Answers:
-        """Views on the answers of some instances."""
+    def part(self, index: Any) -> Answers:
+        """The answers at an index, with the same trace."""
         return Answers(
-            self.cause[instances],
-            self.segment[instances],
-            self.joint[instances],
-            self.fraction[instances],
-            self.steps[instances],
-            self.end[instances],
+            self.cause[index],
+            self.segment[index],
+            self.joint[index],
+            self.fraction[index],
+            self.steps[index],
+            self.trace,
         )
 
 
@@ -138,11 +138,19 @@ def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-
             continue
         busy += 1
         lanes[i, STEPS] += 1
+        traced = len(answers.trace.steps) > 0 and b[at(ACCEPTED, i)] != 0.0
+        if traced:
+            segment = lanes[i, GUIDE] - problem.first[lanes[i, DEMONSTRATION]]
+            trace_step(
+                b, i, rows, lanes[i, INSTANCE], segment, lanes[i, CORRECTION] > 0, answers.trace
+            )
         if b[at(EVENT, i)] == 0.0:
             continue
-        cause, joint, fraction = decide(b, i, lanes, rows, problem)
+        cause, joint, fraction, part = decide(b, i, lanes, rows, problem)
         if cause < 0:
             continue
+        if traced:
+            end_trace(lanes[i, INSTANCE], part, answers.trace)
         plan = lanes[i, INSTANCE], lanes[i, DEMONSTRATION]
         answers.cause[plan] = cause
         done = cause == SUCCESS
@@ -152,9 +160,6 @@ def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-
         answers.joint[plan] = joint
         answers.fraction[plan] = fraction
         answers.steps[plan] = lanes[i, STEPS]
-        if done and answers.end.shape[0] > 0:
-            for j in range(rows.q_stage - rows.q):
-                answers.end[plan[0], plan[1], j] = b[at(rows.q_stage + j, i)]
         lanes[i, ITEM] += 1
         if done or lanes[i, ITEM] == lanes[i, END]:
             next_unit(i, lanes, queue)
@@ -239,7 +244,7 @@ def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     does at the end of the arm's reach, to tell whether a joint reaches its limit before.
 
     Returns:
-        cause (-1: the plan goes on), joint, fraction of the segment.
+        cause (-1: the plan goes on), joint, fraction of the segment, part of the step.
     """
     progress, step = b[at(PROGRESS, i)], b[at(STEP, i)]
     hand2, start2, end2 = b[at(HAND, i)], b[at(RATE_START, i)], b[at(RATE_END, i)]
@@ -248,26 +253,27 @@ def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
         progress, step = 1.0, 0.0
     residuals = b[at(RESIDUAL, i)] > problem.bounds.residual2 * hand2
     if b[at(ACCEPTED, i)] == 0.0 or start2 > bound or residuals:
-        return UNREACHABLE, -1, progress
-    racing = (1.0 - start2 / bound) / (1.0 - start2 / end2) if end2 > bound else 2.0
-    if b[at(ROOM, i)] <= 0.0:
+        return UNREACHABLE, -1, progress, 0.0
+    near_singular = (1.0 - start2 / bound) / (1.0 - start2 / end2) if end2 > bound else 2.0
+    if b[at(MARGIN, i)] <= 0.0:
         joint, u = first_crossing(b, i, rows, problem.bounds.limits)
-        if joint >= 0 and u <= racing:
-            return JOINT_LIMIT, joint, progress + u * step
-    if racing <= 1.0:
-        return UNREACHABLE, -1, progress + racing * step
+        if joint >= 0 and u <= near_singular:
+            return JOINT_LIMIT, joint, progress + u * step, u
+    if near_singular <= 1.0:
+        return UNREACHABLE, -1, progress + near_singular * step, near_singular
     progress += step
     if progress < 1.0 - 1e-9:
-        return (UNREACHABLE if b[at(NEXT_STEP, i)] < problem.bounds.step else -1, -1, progress)
+        cause = UNREACHABLE if b[at(NEXT_STEP, i)] < problem.bounds.step else -1
+        return cause, -1, progress, 1.0
     if (
         b[at(OFF_PLACE, i)] <= POSITION_TOLERANCE**2
         and b[at(OFF_TURN, i)] <= 2.0 * ROTATION_TOLERANCE**2
     ):
         lanes[i, GUIDE] += 1
         if lanes[i, GUIDE] == problem.first[lanes[i, DEMONSTRATION] + 1]:
-            return SUCCESS, -1, 1.0
+            return SUCCESS, -1, 1.0, 1.0
         aim_at_guide(b, i, lanes, problem)
-        return -1, -1, 0.0
+        return -1, -1, 0.0, 1.0
     lanes[i, CORRECTION] += 1
     b[at(AIM, i)] = 2.0
-    return UNREACHABLE if lanes[i, CORRECTION] > CORRECTIONS else -1, -1, 1.0
+    return UNREACHABLE if lanes[i, CORRECTION] > CORRECTIONS else -1, -1, 1.0, 1.0

@@ -1,17 +1,20 @@
-"""Small symmetric systems and determinants as straight-line code."""
+"""Small symmetric systems and determinants as expressions."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
 
-from drake_screw.planning.compiled.emitter import Emitter, Value, Vector, text
+import numpy as np
+
+from drake_screw.planning.compiled.expressions import Value, maximum
+from drake_screw.typing import Array
 
 DETERMINANT_MIN = 1e-44
 """Determinants are held above this, so that rounding cannot turn their sign."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Factor:
     """A symmetric positive matrix [[P, Q], [Q^T, S]], ready to be solved with.
 
@@ -23,82 +26,62 @@ class Factor:
         determinant: of the whole.
     """
 
-    first: list[list[Value]]
-    last: list[list[Value]]
-    bridge: list[list[Value]]
-    coupling: list[list[Value]]
+    first: Array
+    last: Array
+    bridge: Array
+    coupling: Array
     determinant: Value = 1.0
 
     @staticmethod
-    def of(e: Emitter, A: list[list[Value]]) -> Factor:
-        """Of a matrix given by its lower triangle."""
+    def of(A: Array) -> Factor:
+        """Of a matrix, of which only the lower triangle is looked at."""
         k = min(3, len(A))
-        first, volume = inverse(e, A[:k])
-        coupling = [row[:k] for row in A[k:]]
-        bridge = [[e.dot(row, column) for column in coupling] for row in first]
-        last, volume_last = inverse(
-            e,
-            [
-                [
-                    e.sum((1.0, row[k + j]), *((-1.0, row[a], bridge[a][j]) for a in range(k)))
-                    for j in range(i + 1)
-                ]
-                for i, row in enumerate(A[k:])
-            ],
-        )
-        return Factor(first, last, bridge, coupling, e.sum((volume, volume_last)))
+        first, volume = inverse(A[:k, :k])
+        coupling = A[k:, :k]
+        bridge = first @ coupling.T
+        last, volume_last = inverse(A[k:, k:] - coupling @ bridge)
+        return Factor(first, last, bridge, coupling, volume * volume_last)
 
-    def solve(self, e: Emitter, b: Vector) -> list[Value]:
+    def solve(self, b: Array) -> Array:
+        """x of A x = b, (n,)."""
         k = len(self.first)
-        y = [e.dot(row, b[:k]) for row in self.first]
-        rest = [
-            e.sum((1.0, value), *((-1.0, q, yj) for q, yj in zip(row, y, strict=True)))
-            for value, row in zip(b[k:], self.coupling, strict=True)
-        ]
-        x = [e.dot(row, rest) for row in self.last]
-        head = [
-            e.sum((1.0, value), *((-1.0, w, xj) for w, xj in zip(row, x, strict=True)))
-            for value, row in zip(y, self.bridge, strict=True)
-        ]
-        return [*head, *x]
+        y = self.first @ b[:k]
+        x = self.last @ (b[k:] - self.coupling @ y)
+        return np.concatenate([y - self.bridge @ x, x])
 
 
-def inverse(e: Emitter, lower: list[list[Value]]) -> tuple[list[list[Value]], Value]:
+def inverse(A: Array) -> tuple[Array, Value]:
     """Inverse and determinant of a symmetric positive matrix of size 0 to 3.
 
     Args:
-        lower: its lower triangle.
+        A: the matrix, of which only the lower triangle is looked at.
     """
-    n = len(lower)
-    A = [[lower[max(i, j)][min(i, j)] for j in range(n)] for i in range(n)]
-    if n == 0:
-        return [], 1.0
-    if n == 1:
-        cofactors: list[list[Value]] = [[1.0]]
-    elif n == 2:
-        cofactors = [[A[1][1], e.sum((-1.0, A[1][0]))], [e.sum((-1.0, A[1][0])), A[0][0]]]
+    A = _symmetric(A)
+    if len(A) == 0:
+        return A, 1.0
+    if len(A) == 1:
+        cofactors = np.ones((1, 1), dtype=object)
+    elif len(A) == 2:
+        cofactors = np.array([[A[1, 1], -A[1, 0]], [-A[1, 0], A[0, 0]]])
     else:
-        cofactors = [[0.0] * 3 for _ in range(3)]
-        for i in range(3):
-            for j in range(i + 1):
-                (a, b), (c, d) = ((i + 1) % 3, (i + 2) % 3), ((j + 1) % 3, (j + 2) % 3)
-                minor = e.sum((A[a][c], A[b][d]), (-1.0, A[a][d], A[b][c]))
-                cofactors[i][j] = cofactors[j][i] = minor
-    determinant = e.let(f"max({text(e.dot(A[0], cofactors[0]))}, {DETERMINANT_MIN})")
-    scale = e.let(f"1.0 / {determinant}")
-    return [[e.sum((scale, c)) for c in row] for row in cofactors], determinant
+        rows = [np.cross(A[(i + 1) % 3], A[(i + 2) % 3]) for i in range(3)]
+        cofactors = _symmetric(np.array(rows))
+    determinant = maximum(A[0] @ cofactors[0], DETERMINANT_MIN)
+    return (1.0 / determinant) * cofactors, determinant
 
 
-def determinant(e: Emitter, A: list[list[Value]]) -> Value:
+def _symmetric(A: Array) -> Array:
+    return np.where(np.tri(len(A), dtype=bool), A, A.T)
+
+
+def determinant(A: Array) -> Value:
     """Laplace's expansion, one row after the other, of all minors that it takes."""
     minors: dict[tuple[int, ...], Value] = {(): 1.0}
     for k, row in enumerate(A):
         minors = {
-            columns: e.sum(
-                *(
-                    ((-1.0) ** (k + i), row[c], minors[columns[:i] + columns[i + 1 :]])
-                    for i, c in enumerate(columns)
-                )
+            columns: sum(
+                (-1.0) ** (k + i) * row[c] * minors[columns[:i] + columns[i + 1 :]]
+                for i, c in enumerate(columns)
             )
             for columns in combinations(range(len(A)), k + 1)
         }

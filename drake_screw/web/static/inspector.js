@@ -1,12 +1,12 @@
-// The inspector's panel. `page` is the state of a saved page, null where a program is behind it.
-let state = null, chosen = null, sample = 0, timer = null;
+// The inspector's panel. `saved_state` is that of a saved page, null where a program is behind it.
+let state = null, selected = null, sample = 0, timer = null;
 
-function drawn() { return chosen === null ? null : state.attempts[chosen].drawn; }
+function drawn() { return selected === null ? null : state.attempts[selected].drawn; }
 
 function update(next) {
-  const same = state && drawn() && next.chosen !== null && next.attempts[next.chosen].drawn &&
+  const same = state && drawn() && next.selected !== null && next.attempts[next.selected].drawn &&
     next.round === state.round &&
-    String(next.instance.key) === String(state.instance.key) && next.chosen === chosen;
+    String(next.instance.key) === String(state.instance.key) && next.selected === selected;
   state = next;
   stop();
   element("title").textContent = state.title;
@@ -23,9 +23,9 @@ function update(next) {
   element("which").textContent = state.instance.which;
   for (const button of document.querySelectorAll("#steps button")) {
     button.disabled = !state.steps.includes(button.dataset.step);
-    button.onclick = () => tell({ step: button.dataset.step });
+    button.onclick = () => send({ step: button.dataset.step });
   }
-  if (same) { choose(chosen, sample); } else { choose(state.chosen); }
+  if (same) { select_attempt(selected, sample); } else { select_attempt(state.selected); }
 }
 
 function fill_select(id, options, value) {
@@ -39,35 +39,36 @@ function fill_select(id, options, value) {
     }));
   }
   select.value = value === null ? "" : value;
-  select.onchange = () => tell({ [id]: select.value === "" ? null : Number(select.value) });
+  select.onchange = () => send({ [id]: select.value === "" ? null : Number(select.value) });
 }
 
 function pick(event) {
   const map = event.currentTarget;
   const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(
     map.getScreenCTM().inverse());
-  tell({ at: [map.dataset.x - point.y / 1000, map.dataset.y - point.x / 1000] });
+  send({ at: [map.dataset.x - point.y / 1000, map.dataset.y - point.x / 1000] });
 }
 
-function choose(index, at) {
-  chosen = index;
+function select_attempt(index, at) {
+  selected = index;
   scene.clear();
   element("demonstrations").replaceChildren(...state.attempts.map((attempt, i) => {
     const item = entry(attempt.number, attempt.color, `${attempt.name}: ${attempt.words}`);
-    item.setAttribute("aria-current", i === chosen);
-    activate(item, () => (state.live ? tell({ demonstration: i }) : choose(i)));
+    item.setAttribute("aria-current", i === selected);
+    activate(item, () => (state.live ? send({ demonstration: i }) : select_attempt(i)));
     return item;
   }));
   for (const [i, attempt] of state.attempts.entries())
-    if (attempt.drawn) scene.show(attempt.drawn.path, i === chosen);
+    if (attempt.drawn) scene.show(attempt.drawn.path, i === selected);
   const attempt = drawn();
   for (const id of ["track", "headline", "segments", "joints"]) element(id).hidden = !attempt;
   if (!attempt) { scene.apply(); return; }
   element("headline").textContent = attempt.headline;
   element("headline").style.borderColor = attempt.color;
   element("segments").replaceChildren(...attempt.segments.map((segment, i) => {
-    const item = entry(i + 1, segment.color, segment.words, segment.status);
-    activate(item, () => place(attempt.at.findIndex((a) => a[0] >= i)));
+    const item = entry(i + 1, segment.color, segment.words);
+    item.title = segment.status;
+    activate(item, () => show_sample(attempt.at.findIndex((a) => a[0] >= i)));
     if (segment.first < 0) { item.removeAttribute("tabindex"); item.classList.add("ahead"); }
     return item;
   }));
@@ -84,16 +85,7 @@ function choose(index, at) {
     return row;
   }));
   element("slider").max = attempt.at.length - 1;
-  place(at === undefined ? attempt.start : Math.min(at, attempt.at.length - 1));
-}
-
-function entry(number, color, words, note) {
-  const item = make("li");
-  const chip = make("span", "", "chip");
-  chip.style.background = color;
-  item.append(make("span", number, "number"), chip, make("span", words));
-  if (note) item.title = note;
-  return item;
+  show_sample(at === undefined ? attempt.start : Math.min(at, attempt.at.length - 1));
 }
 
 function activate(item, action) {
@@ -102,7 +94,7 @@ function activate(item, action) {
   item.onkeydown = (event) => { if (event.key === "Enter") action(); };
 }
 
-function place(index) {
+function show_sample(index) {
   const attempt = drawn();
   sample = Math.max(0, index);
   element("slider").value = sample;
@@ -144,10 +136,10 @@ function stop() {
 
 function play() {
   if (timer) { stop(); return; }
-  if (sample >= drawn().at.length - 1) place(0);
+  if (sample >= drawn().at.length - 1) show_sample(0);
   element("play").textContent = "pause";
   timer = setInterval(() => {
-    if (sample >= drawn().at.length - 1) stop(); else place(sample + 1);
+    if (sample >= drawn().at.length - 1) stop(); else show_sample(sample + 1);
   }, 50);
 }
 
@@ -163,17 +155,9 @@ function look(distance) {
 }
 
 element("play").onclick = play;
-element("slider").oninput = (event) => { stop(); place(Number(event.target.value)); };
-element("key").innerHTML = KEY.map(([color, text]) =>
-  `<div><i style="background: ${color}"></i>${text}</div>`).join("") +
-  '<label><input type="checkbox" id="arm-shown" checked>arm</label>' +
-  '<label><input type="checkbox" id="ghost-shown" checked>ghost at the failure</label>' +
-  '<label><input type="checkbox" id="all-axes">axes of all screws</label>' +
-  '<label><input type="checkbox" id="dots-shown">instances of the round</label>' +
-  '<div class="look">look at <button id="near">the hand</button>' +
-  '<button id="far">the whole arm</button></div>';
+element("slider").oninput = (event) => { stop(); show_sample(Number(event.target.value)); };
 element("near").onclick = () => drawn() && look(0.75);
 element("far").onclick = () => drawn() && look(1.9);
-for (const box of document.querySelectorAll("#key input")) box.onchange = () => drawn() && place(sample);
+for (const box of document.querySelectorAll("#key input")) box.onchange = () => drawn() && show_sample(sample);
 window.dispatchEvent(new Event("resize"));
-if (page) update(page); else listen(update);
+if (saved_state) update(saved_state); else listen(update);

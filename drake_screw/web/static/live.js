@@ -10,16 +10,8 @@ listen((state) => {
   element("map").innerHTML = state.map;
   element("map-words").textContent = state.map_words;
   for (const id of ["rounds", "demonstrations"]) {
-    element(id).replaceChildren(...state[id].map((line) => {
-      const item = make("li"), chip = make("span", "", "chip");
-      chip.style.background = line.color;
-      item.append(make("span", line.number, "number"), chip, make("span", line.words));
-      return item;
-    }));
+    element(id).replaceChildren(
+      ...state[id].map((line) => entry(line.number, line.color, line.words)));
   }
 });
-element("key").innerHTML =
-  `<div class="scale" style="background: linear-gradient(to right, ${SCALE.join(", ")})"></div>` +
-  '<div class="ends"><span>0</span><span>failure probability</span><span>1</span></div>' +
-  KEY.map(([color, text]) => `<div><i style="background: ${color}"></i>${text}</div>`).join("");
 window.dispatchEvent(new Event("resize"));

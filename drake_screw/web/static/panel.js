@@ -1,4 +1,4 @@
-// What all pages with a panel beside Meshcat share: its scene tree, and the way to the program.
+// What all pages with a panel beside Meshcat share: its scene tree, elements, and the program.
 const scene = {
   wanted: new Map(),
   place(path, matrix) { this.wanted.set("t" + path, () => viewer.set_transform(parts(path), matrix)); },
@@ -19,28 +19,35 @@ function make(tag, text, classes) {
   if (classes) item.className = classes;
   return item;
 }
-function tell(message) {
+function send(message) {
   return fetch("do", { method: "POST", headers: { "Content-Type": "application/json" },
     body: JSON.stringify(message) });
 }
 async function listen(update) {
   let seen = 0;
   for (;;) {
-    let told = null;
+    let received = null;
     try {
       const answer = await fetch("state?after=" + seen);
       if (document.body.classList.contains("gone")) location.reload();
-      if (answer.status === 200) told = await answer.json();
+      if (answer.status === 200) received = await answer.json();
     } catch (error) {
       seen = 0;
       document.body.classList.add("gone");
       await new Promise((wake) => setTimeout(wake, 1000));
     }
-    if (told) {
-      seen = told.version;
-      try { update(told.state); } catch (error) { console.error(error); }
+    if (received) {
+      seen = received.version;
+      try { update(received.state); } catch (error) { console.error(error); }
     }
   }
+}
+// A list's item: its number, a chip of a colour, and words.
+function entry(number, color, words) {
+  const item = make("li"), chip = make("span", "", "chip");
+  chip.style.background = color;
+  item.append(make("span", number, "number"), chip, make("span", words));
+  return item;
 }
 window.addEventListener("meshcat-message", (() => {
   let timer;

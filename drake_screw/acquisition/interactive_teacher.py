@@ -1,0 +1,47 @@
+"""A teacher who is a person at the screen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from drake_screw.acquisition.events import Suggestion
+from drake_screw.acquisition.teacher import Lesson
+from drake_screw.demonstrations import Recording
+
+
+class DemonstrationPrompt(Protocol):
+    """Where a person is asked for a demonstration, and gives it: a teaching page, say."""
+
+    def ask(self, suggestion: Suggestion, number: int) -> Recording | None:
+        """The accepted recording of demonstration `number` (from 0); None if there will be none."""
+        ...
+
+
+@dataclass(frozen=True)
+class InteractiveTeacher:
+    """Asks a person.
+
+    Attributes:
+        prompt: where they are asked.
+    """
+
+    prompt: DemonstrationPrompt
+
+    def demonstrate(
+        self,
+        suggestion: Suggestion,
+        *,
+        number: int,
+        used: tuple[Recording, ...],
+        rng: np.random.Generator,
+    ) -> Lesson:
+        """See `Teacher.demonstrate`; what a person does depends on them alone."""
+        recording = self.prompt.ask(suggestion, number)
+        if recording is None:
+            return Lesson(None, "the teacher has no demonstration for this place")
+        away = np.linalg.norm(recording.X_WO[:, :2, 3] - suggestion.x_y_yaw[:, :2], axis=-1).sum()
+        source = "dropped into the folder" if recording.source is not None else "led by hand"
+        return Lesson(recording, f"{source}, {away * 100:.0f} cm from the suggestion")

@@ -1,0 +1,83 @@
+"""A teacher that answers from a library of recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_screw.acquisition.events import Suggestion
+from drake_screw.acquisition.teacher import Lesson
+from drake_screw.demonstrations import Recording
+from drake_screw.tasks import Regions
+from drake_screw.typing import Array
+
+
+class Foreign(Protocol):
+    """What a teacher has to ask about recordings made on another robot."""
+
+    def seen(self, recording: Recording) -> Array:
+        """Where its objects stood, X_WO (k, 4, 4), in the world that requests refer to."""
+        ...
+
+    def works(self, recordings: Sequence[Recording], x_y_yaw: Array) -> NDArray[np.bool_]:
+        """Whether each gives a plan at a task instance (k, 3) with the arm that is planned for."""
+        ...
+
+
+@dataclass(frozen=True)
+class RecordedTeacher:
+    """Gives the nearest unused recording of the suggested region, or else the nearest at all.
+
+    A demonstration given where it is asked for works there. Of another robot's recordings that
+    cannot be taken for granted, wherever the objects stood. So instead of those of the suggested
+    region, the ones that do work at the suggested place come first.
+
+    Attributes:
+        recordings: the library; a place outside the work area belongs to the nearest region.
+        regions: the partition that requests refer to, unless they bring their own.
+        foreign: what is known of recordings made on another robot; None where they were not.
+    """
+
+    recordings: tuple[Recording, ...]
+    regions: Regions
+    foreign: Foreign | None = None
+
+    def demonstrate(
+        self,
+        suggestion: Suggestion,
+        *,
+        number: int,
+        used: tuple[Recording, ...],
+        rng: np.random.Generator,
+    ) -> Lesson:
+        """See `Teacher.demonstrate`; nothing is left to chance here."""
+        spent = {_key(r) for r in used}
+        left = [r for r in self.recordings if _key(r) not in spent]
+        if not left:
+            return Lesson(None, f"all {len(self.recordings)} recordings are used")
+        there = [r.X_WO if self.foreign is None else self.foreign.seen(r) for r in left]
+        places = self.regions.area.x_y_yaw(np.stack(there))
+        away = np.linalg.norm(places[..., :2] - suggestion.x_y_yaw[..., :2], axis=-1).sum(axis=-1)
+        if self.foreign is None:
+            fits = (suggestion.regions or self.regions).index(places) == suggestion.region
+            one, none = (
+                f"the nearest unused recording of region {suggestion.region}",
+                f"region {suggestion.region} has no unused recording; the nearest at all",
+            )
+        else:
+            fits = self.foreign.works(left, suggestion.x_y_yaw)
+            one, none = (
+                "of the unused recordings that work there, the nearest",
+                "no unused recording works there; the nearest at all",
+            )
+        chosen = int(np.lexsort((away, ~fits))[0])
+        which = one if fits[chosen] else none
+        return Lesson(left[chosen], f"{which}, {away[chosen] * 100:.0f} cm from the suggestion")
+
+
+def _key(recording: Recording) -> tuple[str, bytes]:
+    return recording.name, np.round(recording.X_WO, 9).tobytes()

@@ -1,0 +1,92 @@
+"""Joint paths of an arm that a hand leads through key poses, many candidates at a time.
+
+An arm whose weight is compensated follows the hand that leads its end effector, and its joints
+move with the minimum norm: dq = J(q)^+ V. People lead it along nearly straight screws, and that
+is what the key poses are joined by. The planner moves the arm by the same law, which is why what
+can be led this way can nearly always be planned, too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_screw.robot import ScrewChain
+from drake_screw.screws import inverse, log, rotation_angle, sclerp, translation_distance
+from drake_screw.typing import Array
+
+STEP = 0.06  # rad, hand motion in one step
+METERS_PER_RADIAN = 0.5  # travel of the hand that takes as many steps as a turn by a radian
+DAMPING = 0.01
+MAX_JOINT_STEP = 0.25  # rad in one step; beyond it nobody could lead the arm
+ARRIVAL_TOLERANCE = (2e-3, 1e-2)  # m, rad
+
+
+@dataclass(frozen=True, eq=False)
+class CandidatePaths:
+    """Joint paths of c candidates.
+
+    Attributes:
+        q: (c, m, n) rad or m.
+        segment: (m,) the key pose, from 0, that each point leads to.
+        arrived: (c,) whether the hand came to every key pose without passing near a singularity.
+    """
+
+    q: Array
+    segment: NDArray[np.int64]
+    arrived: NDArray[np.bool_]
+
+
+def follow_key_poses(chain: ScrewChain, q_start: Array, X_WK: Array) -> CandidatePaths:
+    """Lead the arm from one key pose to the next along constant screws.
+
+    Args:
+        chain: the arm.
+        q_start: (n,) rad or m.
+        X_WK: (c, g, 4, 4) key poses of the hand.
+
+    Returns:
+        The joint paths; limits are not looked at. They end early if no candidate is left.
+    """
+    count = len(X_WK)
+    q = np.tile(np.asarray(q_start, dtype=float), (count, 1))
+    X_WE = chain.pose(q)
+    points, segments, arrived = [q], [0], np.ones(count, dtype=bool)
+    for segment in range(X_WK.shape[1]):
+        X_WA, X_WB = X_WE, X_WK[:, segment]
+        size = rotation_angle(X_WA, X_WB) + translation_distance(X_WA, X_WB) / METERS_PER_RADIAN
+        steps = max(4, int(np.ceil(size.max() / STEP)))
+        for i in range(1, steps + 1):
+            target = sclerp(X_WA, X_WB, np.full(count, i / steps))
+            motion = damped_joint_motion(chain.jacobian(q), log(target @ inverse(X_WE)))
+            near_singular = np.linalg.norm(motion, axis=-1) > MAX_JOINT_STEP
+            arrived &= ~near_singular
+            q = q + np.where(near_singular[:, None], 0.0, motion)
+            X_WE = chain.pose(q)
+            points.append(q)
+            segments.append(segment)
+            if not arrived.any():
+                return CandidatePaths(np.stack(points, axis=1), np.array(segments), arrived)
+        arrived &= translation_distance(X_WE, X_WB) < ARRIVAL_TOLERANCE[0]
+        arrived &= rotation_angle(X_WE, X_WB) < ARRIVAL_TOLERANCE[1]
+    return CandidatePaths(np.stack(points, axis=1), np.array(segments), arrived)
+
+
+def damped_joint_motion(J: Array, V: Array) -> Array:
+    """Minimum-norm joint motion for a twist, damped near singularities.
+
+    dq = J^T (J J^T + damping^2 I)^-1 V: damped least squares (Nakamura and Hanafusa, Journal of
+    Dynamic Systems, Measurement, and Control, 1986).
+
+    Args:
+        J: (..., 6, n).
+        V: (..., 6).
+
+    Returns:
+        (..., n) rad or m.
+    """
+    Jt = np.swapaxes(J, -1, -2)
+    A = J @ Jt + DAMPING**2 * np.eye(6)
+    return (Jt @ np.linalg.solve(A, V[..., None]))[..., 0]

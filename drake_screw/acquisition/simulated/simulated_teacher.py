@@ -1,0 +1,157 @@
+"""The simulated teacher: demonstrates where it is asked to, as a person would, or says why not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_screw.acquisition.events import Suggestion
+from drake_screw.acquisition.simulated.candidate_paths import CandidatePaths, follow_key_poses
+from drake_screw.acquisition.simulated.human import RATE, timed, with_hand_noise
+from drake_screw.acquisition.simulated.motions import (
+    MOTIONS,
+    HandPath,
+    Motion,
+    azimuth_deviations,
+    hand_poses,
+    tool_lengths,
+    usual_azimuth,
+)
+from drake_screw.acquisition.teacher import Lesson
+from drake_screw.demonstrations import Recording
+from drake_screw.demonstrations.recording import checked
+from drake_screw.errors import ScenarioError, unknown
+from drake_screw.robot import Workcell
+from drake_screw.tasks import WorkArea
+from drake_screw.typing import Array
+
+CANDIDATES = 64  # ways thought of at a time
+ATTEMPTS = 3
+COLLISION_STRIDE = 6  # one in so many points of a path is checked before it is performed
+MARGIN = 0.15  # rad, what people mean to keep from the joints' stops
+MARGIN_TOLERANCE = 0.05  # rad, by which they miss it
+COMFORTABLE_MARGIN = 0.6  # rad, beyond which more distance from the stops is no easier
+AZIMUTH_WEIGHT = 0.4  # rad of margin that people give up rather than come from a radian aside
+TRAVEL_WEIGHT = 0.03  # rad of margin that people give up to save a radian of joint motion
+
+
+@dataclass(frozen=True, eq=False)
+class _Rehearsal:
+    """Candidate ways as tried out, and how comfortable each was; -inf where it does not work."""
+
+    hand: HandPath
+    paths: CandidatePaths
+    comfort: Array
+    within: NDArray[np.bool_]
+
+
+class SimulatedTeacher:
+    """Leads the arm of a workcell as people do.
+
+    For each request it thinks of many ways to do the motion at that place, with the variation that
+    people show, follows each with the arm's kinematics, and gives the most comfortable one that
+    collides with nothing: far from the joints' stops, with little motion, coming from the usual
+    side, the tool held as usual. Where none works it thinks again, with the tool held longer. It
+    does not ask the planner, nor knows what other places the demonstration will serve.
+
+    The motion is that of the hand relative to the first object, and takes the end effector's z
+    axis to point out of the hand. The table must be level.
+
+    Args:
+        workcell: the arm and what it may collide with.
+        area: turns requests into object poses.
+        motion: "pouring" or "scooping", or a function like those of that name in `motions`.
+
+    Raises:
+        ScenarioError: no such motion.
+    """
+
+    def __init__(self, workcell: Workcell, area: WorkArea, motion: str | Motion) -> None:
+        if isinstance(motion, str) and motion not in MOTIONS:
+            message, remedy = unknown("motion", motion, "the simulated teacher", MOTIONS)
+            raise ScenarioError(message, remedy=remedy)
+        self.workcell = workcell
+        self.area = area
+        self.motion = motion if isinstance(motion, str) else getattr(motion, "__name__", "motion")
+        self._motion = MOTIONS[motion] if isinstance(motion, str) else motion
+        self._chain = workcell.arm.screw_chain()
+
+    def demonstrate(
+        self,
+        suggestion: Suggestion,
+        *,
+        number: int,
+        used: tuple[Recording, ...],
+        rng: np.random.Generator,
+    ) -> Lesson:
+        """A new recording at the suggested instance, a function of it and of `rng` alone.
+
+        Where none of the ways that were thought of works, the remark says what was in the way.
+        """
+        X_WO = self.area.X_WO(suggestion.x_y_yaw)
+        x, y = suggestion.x_y_yaw[0, :2]
+        unreached = limited = collided = 0
+        for attempt in range(ATTEMPTS):
+            rehearsal = self._rehearse(X_WO, rng, stretched=attempt > 0)
+            unreached += int(np.count_nonzero(~rehearsal.paths.arrived))
+            limited += int(np.count_nonzero(rehearsal.paths.arrived & ~rehearsal.within))
+            possible = np.flatnonzero(np.isfinite(rehearsal.comfort))
+            for choice in possible[np.argsort(-rehearsal.comfort[possible])]:
+                if self.workcell.collides(
+                    rehearsal.paths.q[choice, ::COLLISION_STRIDE], X_WO
+                ).any():
+                    collided += 1
+                    continue
+                q = self._perform(rehearsal, int(choice), rng)
+                if (self.workcell.arm.margin(q) < MARGIN - MARGIN_TOLERANCE).any():
+                    limited += 1
+                elif self.workcell.collides(q, X_WO).any():
+                    collided += 1
+                else:
+                    remark = f"simulated {self.motion} at x={x:.2f}, y={y:.2f}"
+                    return Lesson(self._recording(q, X_WO, number), remark)
+        return Lesson(
+            None,
+            f"no feasible demonstration at x={x:.2f}, y={y:.2f}: of {ATTEMPTS * CANDIDATES} ways "
+            f"of {self.motion}, {unreached} are out of reach, {limited} meet a joint limit and "
+            f"{collided} collide",
+        )
+
+    def _rehearse(self, X_WO: Array, rng: np.random.Generator, *, stretched: bool) -> _Rehearsal:
+        rest, p_WO = self._chain.pose(self.workcell.start), X_WO[0, :3, 3]
+        hand = self._motion(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
+        aside = azimuth_deviations(rng, CANDIDATES)
+        X_WK = hand_poses(hand, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
+        paths = follow_key_poses(self._chain, self.workcell.start, X_WK)
+        margin = self.workcell.arm.margin(paths.q).min(axis=(1, 2))
+        within = margin >= MARGIN
+        travel = np.linalg.norm(np.diff(paths.q, axis=1), axis=-1).sum(axis=1)
+        comfort = (
+            np.minimum(margin, COMFORTABLE_MARGIN)
+            - hand.held
+            - AZIMUTH_WEIGHT * aside**2
+            - TRAVEL_WEIGHT * travel
+        )
+        comfort += rng.normal(0.0, 0.02, CANDIDATES)
+        return _Rehearsal(hand, paths, np.where(paths.arrived & within, comfort, -np.inf), within)
+
+    def _perform(self, rehearsal: _Rehearsal, choice: int, rng: np.random.Generator) -> Array:
+        q = rehearsal.paths.q[choice]
+        moving = timed(
+            q,
+            rehearsal.paths.segment,
+            self._chain.pose(q),
+            rehearsal.hand.pause,
+            self.workcell.arm.velocity_limits,
+            rng,
+        )
+        return with_hand_noise(self._chain, moving, rng)
+
+    def _recording(self, q: Array, X_WO: Array, number: int) -> Recording:
+        arm = self.workcell.arm
+        recording = Recording(
+            f"demo_{number + 1:02d}", arm.joint_names, np.arange(len(q)) / RATE, q, X_WO
+        )
+        return replace(checked(recording, arm.lower, arm.upper), notes=())

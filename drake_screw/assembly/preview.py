@@ -1,0 +1,288 @@
+"""What a scenario would do, found out before it is done."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from drake_screw.acquisition import RecordedTeacher, random_suggestion
+from drake_screw.assembly.setup import Setup
+from drake_screw.bandits import CertifyOrSplit
+from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
+from drake_screw.bandits.eprocess import EProcess
+from drake_screw.bandits.naive_pac import NaivePac, sample_size
+from drake_screw.bandits.spending import attempt_delta
+from drake_screw.scenario.schema import Scenario
+
+PROBE = 2_000
+
+
+@dataclass(frozen=True)
+class PreviewedArm:
+    """An arm: its model's name, its joints and end effector, and its reach in m."""
+
+    model: str
+    joints: tuple[str, ...]
+    end_effector: str
+    reach: float
+
+    def __str__(self) -> str:
+        return f"{self.model}, {len(self.joints)} joints, end effector '{self.end_effector}'"
+
+
+@dataclass(frozen=True)
+class PreviewedObject:
+    """Where an object may stand: least and greatest x and y in m and yaw in rad; z in m."""
+
+    name: str
+    x: tuple[float, float]
+    y: tuple[float, float]
+    yaw: tuple[float, float]
+    z: float
+
+    def __str__(self) -> str:
+        ranges = []
+        for axis, unit in (("x", "m"), ("y", "m"), ("yaw", "rad")):
+            lower, upper = getattr(self, axis)
+            numbers = f"{lower:g}..{upper:g}" if lower < upper else f"{lower:g}"
+            ranges.append(f"{axis} {numbers} {unit}")
+        return f"{self.name}: {', '.join(ranges)}, z {self.z:.4g} m"
+
+
+@dataclass(frozen=True)
+class PreviewedTree:
+    """Adaptive regions: free axes, the smallest cell's share of the area, its failure level."""
+
+    axes: int
+    smallest: float
+    level: float
+
+    def __str__(self) -> str:
+        axes = f"{self.axes} {'axis' if self.axes == 1 else 'axes'}"
+        return (
+            f"adaptive: the work area is halved along its {axes} wherever something fails, down to "
+            f"{self.smallest:.4g} of it; a cell that fails {self.level:g} of the time is noticed"
+        )
+
+
+@dataclass(frozen=True)
+class PreviewedSamples:
+    """Instances of a round, as far as a strategy says beforehand.
+
+    Attributes:
+        round: of a round in which nothing fails; None if it cannot be said.
+        region: of each region in such a round; None where regions are adaptive.
+        region_at_most: of a region before one is judged; None if there is no bound.
+    """
+
+    round: int | None = None
+    region: int | None = None
+    region_at_most: int | None = None
+
+    @property
+    def fixed(self) -> bool:
+        """Whether every round takes the same."""
+        return self.region is not None and self.region == self.region_at_most
+
+    def __str__(self) -> str:
+        if self.round is None:
+            return "as many a round as it takes"
+        if self.region is None:
+            return (
+                f"{self.round:,} in a first round where nothing fails, otherwise as many as it "
+                "takes"
+            )
+        if self.fixed:
+            return f"{self.region:,} in each region, {self.round:,} a round, every round"
+        return (
+            f"{self.round:,} in a first round where nothing fails ({self.region} in each region), "
+            f"some thousands where something does, never over {self.region_at_most:,} in a region "
+            "before one is flagged"
+        )
+
+
+@dataclass(frozen=True)
+class Preview:
+    """The run that a scenario describes; as text it is what ``drake-screw check`` prints.
+
+    Attributes:
+        scenario, description: its name, and its own words.
+        robot: the arm that is planned for.
+        objects: where they may stand.
+        regions: how many; None where they are adaptive.
+        adaptive: how the work area is halved; None for a grid.
+        beta, epsilon, delta: what is to be certified.
+        strategy, guarantee: the bandit, and what it promises.
+        teacher: "simulated", "recorded" or "interactive".
+        motion: that a simulated teacher shows.
+        recordings: how many a recorded teacher has.
+        recorded_on: the arm that recordings are of, where that is another.
+        recordings_named: whether the scenario names recordings.
+        budget: most demonstrations in total.
+        farthest_corner: m, of the work area from the shoulder.
+        samples: instances of a round.
+        plans_per_second: here, measured with one demonstration; None if there is none to begin
+            with.
+    """
+
+    scenario: str
+    description: str
+    robot: PreviewedArm
+    objects: tuple[PreviewedObject, ...]
+    regions: int | None
+    adaptive: PreviewedTree | None
+    beta: float
+    epsilon: float
+    delta: float
+    strategy: str
+    guarantee: str
+    teacher: str
+    motion: str | None
+    recordings: int | None
+    recorded_on: PreviewedArm | None
+    recordings_named: bool
+    budget: int
+    farthest_corner: float
+    samples: PreviewedSamples
+    plans_per_second: float | None
+
+    def __str__(self) -> str:
+        return "\n".join(f"{name:<10} {text}" for name, text in self._lines())
+
+    def _lines(self) -> Iterator[tuple[str, str]]:
+        yield "scenario", f"{self.scenario}: {self.description}".rstrip(": ")
+        yield "robot", f"{self.robot}, reach {self.robot.reach:.2f} m"
+        yield from (("object", str(item)) for item in self.objects)
+        yield "regions", f"K = {self.regions}" if self.adaptive is None else str(self.adaptive)
+        yield (
+            "goal",
+            f"every region succeeds at least {self.beta:g} of the time, accuracy "
+            f"{self.epsilon:g}, confidence {1 - self.delta:g}",
+        )
+        yield "strategy", f"{self.strategy}: {self.guarantee}"
+        yield "teacher", f"{self.teacher}: {self._teacher()}"
+        if self.recorded_on is not None:
+            none = "none yet; recordings named in the scenario would be "
+            yield "recorded", f"{'' if self.recordings_named else none}on {self.recorded_on}"
+        yield "budget", f"{self.budget} demonstrations"
+        if self.farthest_corner > self.robot.reach:
+            yield (
+                "note",
+                f"the farthest corner of the work area is {self.farthest_corner:.2f} m from the "
+                "shoulder; only an object held long reaches there",
+            )
+        rate = self.plans_per_second
+        if rate is None:
+            yield "time", "unknown without a first demonstration"
+            return
+        yield "samples", str(self.samples)
+        if self.samples.fixed and self.samples.round is not None:
+            yield "time", f"about {self.samples.round / rate:,.0f} s a round or more here"
+        else:
+            yield "time", f"{1e4 / rate:,.1f} s for 10,000 instances here"
+
+    def _teacher(self) -> str:
+        if self.teacher == "interactive":
+            return "you, in the browser"
+        return str(self.motion) if self.recordings is None else f"{self.recordings} recordings"
+
+
+def preview(scenario: Scenario) -> Preview:
+    """Build everything a scenario names and describe the run it would make.
+
+    Raises:
+        DrakeScrewError: whatever would make the run fail on its input.
+    """
+    setup = Setup(scenario)
+    arm, goal, tree, block = setup.workcell.arm, setup.goal, setup.tree, scenario.teacher
+    teacher = None if block.kind == "interactive" else setup.teacher
+    recorded = isinstance(teacher, RecordedTeacher)
+    chain, recorder = arm.screw_chain(), setup.recorder
+    other = None
+    if recorder.model_file is not None:
+        reach = recorder.arm.screw_chain().reach
+        names = recorder.model_file.stem, recorder.arm.joint_names, recorder.arm.end_effector
+        other = PreviewedArm(*names, reach)
+    return Preview(
+        scenario=scenario.name,
+        description=scenario.description,
+        robot=PreviewedArm(
+            setup.workcell.model_file.stem, arm.joint_names, arm.end_effector, chain.reach
+        ),
+        objects=_objects(setup),
+        regions=setup.regions.K if tree is None else None,
+        adaptive=None if tree is None else PreviewedTree(tree.dimension, tree.smallest, tree.level),
+        beta=goal.beta,
+        epsilon=goal.epsilon,
+        delta=goal.delta,
+        strategy=setup.bandit.name,
+        guarantee=setup.bandit.guarantee,
+        teacher=block.kind,
+        motion=str(block.motion) if block.kind == "simulated" else None,
+        recordings=len(teacher.recordings) if isinstance(teacher, RecordedTeacher) else None,
+        recorded_on=other,
+        recordings_named=recorded or not isinstance(scenario.demonstrations.initial, int),
+        budget=scenario.demonstrations.budget,
+        farthest_corner=_farthest_corner(setup),
+        samples=_samples(setup),
+        plans_per_second=_plans_per_second(setup),
+    )
+
+
+def _objects(setup: Setup) -> tuple[PreviewedObject, ...]:
+    found = []
+    for o in setup.area.objects:
+        x, y, yaw = zip(o.lower, o.upper, strict=True)
+        found.append(PreviewedObject(o.name, x, y, yaw, o.z))
+    return tuple(found)
+
+
+def _farthest_corner(setup: Setup) -> float:
+    corners = [
+        (x, y, o.z)
+        for o in setup.area.objects
+        for x in (o.lower[0], o.upper[0])
+        for y in (o.lower[1], o.upper[1])
+    ]
+    shoulder = setup.workcell.arm.screw_chain().shoulder
+    return float(np.linalg.norm(np.array(corners) - shoulder, axis=1).max())
+
+
+def _samples(setup: Setup) -> PreviewedSamples:
+    bandit, goal, K = setup.bandit, setup.goal, setup.regions.K
+    match bandit:
+        case CertifyOrSplit():
+            return PreviewedSamples(bandit.least(bandit.start()[0]))
+        case NaivePac():
+            n = sample_size(K, goal.epsilon, goal.delta)
+            return PreviewedSamples(n * K, n, n)
+        case EProcess():
+            delta = attempt_delta(goal.delta, 1, spend=bandit.spend)
+            c_clear, c_flag = math.log(1.0 / delta), math.log(K / goal.delta)
+            least = int(clear_boundary(goal.tau, c_clear)(0))
+            most = bandit.cap or deciding_size(goal.tau, c_clear, goal.q, c_flag)
+            return PreviewedSamples(least * K, least, most)
+        case _:
+            return PreviewedSamples()
+
+
+def _plans_per_second(setup: Setup) -> float | None:
+    """Measured with one demonstration on instances from all over the work area."""
+    if setup.scenario.teacher.kind == "interactive":
+        return None
+    rng = np.random.default_rng(setup.scenario.seed)
+    place = random_suggestion(setup.regions, rng)
+    lesson = setup.teacher.demonstrate(place, number=0, used=(), rng=rng)
+    if lesson.recording is None:
+        return None
+    demonstration = setup.learn(lesson.recording)
+    shape = (PROBE, *setup.area.lower.shape)
+    X_WO = setup.area.X_WO(rng.uniform(setup.area.lower, setup.area.upper, shape))
+    setup.planner.any_success([demonstration], X_WO[:1], setup.workcell.start)
+    began = time.perf_counter()
+    setup.planner.any_success([demonstration], X_WO, setup.workcell.start)
+    return PROBE / (time.perf_counter() - began)

@@ -1,0 +1,44 @@
+"""The teachers that a scenario can name without more ado; each is made from the setup."""
+
+from __future__ import annotations
+
+from drake_screw.acquisition import RecordedTeacher, Teacher
+from drake_screw.acquisition.simulated import SimulatedTeacher
+from drake_screw.assembly.recorder import ForeignRecordings
+from drake_screw.assembly.setup import Setup
+from drake_screw.errors import ScenarioError
+
+
+def simulated(setup: Setup) -> Teacher:
+    """A teacher who leads the arm as people do, and shows the scenario's motion."""
+    return SimulatedTeacher(setup.workcell, setup.area, setup.motion)
+
+
+def recorded(setup: Setup) -> Teacher:
+    """A teacher who answers from the scenario's folder of recordings.
+
+    Raises:
+        RecordingError: the folder cannot be used.
+    """
+    block, recorder = setup.scenario.teacher, setup.recorder
+    assert block.folder is not None
+    foreign = None
+    if recorder.robot is not None:
+        foreign = ForeignRecordings(
+            recorder, setup.segmentation, setup.planner, setup.workcell.start
+        )
+    return RecordedTeacher(recorder.library(block.folder, block.format), setup.regions, foreign)
+
+
+def interactive(setup: Setup) -> Teacher:
+    """No teacher: a person is asked on a page, which a setup knows nothing of.
+
+    Raises:
+        ScenarioError: always.
+    """
+    raise ScenarioError(
+        "teacher.kind: an interactive teacher has to be passed in: it asks on a page",
+        remedy="Run it from the command line, or pass "
+        "teacher=drake_screw.web.teaching_page.interactive_teacher.",
+        file=setup.scenario.source,
+    )

@@ -1,0 +1,51 @@
+"""``drake-screw execute``: plans of a run, simulated with dynamics."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from drake_screw.commands.options import (
+    InstanceOption,
+    JsonOption,
+    RunArgument,
+    VerboseOption,
+    WorkersOption,
+)
+from drake_screw.commands.output import Output
+from drake_screw.errors import DrakeScrewError
+
+EXAMPLE = "drake-screw execute runs/pouring/TIME --per-region 1"
+
+
+def execute(
+    run: RunArgument,
+    per_region: Annotated[int, typer.Option(help="Instances to draw in every region.", min=1)] = 2,
+    instance: InstanceOption = None,
+    graphviz: Annotated[
+        bool, typer.Option("--graphviz", help="Print the simulated diagram for dot, and stop.")
+    ] = False,
+    workers: WorkersOption = None,
+    json: JsonOption = None,
+    verbose: VerboseOption = False,
+) -> None:
+    """Simulate plans of a run, and check what the robot does.
+
+    With the arm's dynamics and controllers. Reports joint limits, velocities, tracking, deviation
+    from the screws and contacts; writes a table and a recording that plays in the browser.
+    """
+    if graphviz and json is not None:
+        raise DrakeScrewError(
+            "--graphviz executes nothing, so there is no result for --json",
+            remedy="Give one of them.",
+        )
+    output = Output(json)
+    from drake_screw.runs import executions
+
+    if graphviz:
+        print(executions.station_graphviz(run))
+        return
+    output.present(
+        executions.execute(run, per_region=per_region, instance=instance, workers=workers)
+    )

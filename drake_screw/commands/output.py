@@ -1,0 +1,89 @@
+"""Where a verb's words go, and its result as JSON."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from rich.console import Console
+
+from drake_screw.errors import DrakeScrewError
+
+STANDARD_OUTPUT = "-"
+
+
+class Output:
+    """What a verb says and writes.
+
+    Args:
+        json: a file to write its result to, or "-" for standard output, which then has nothing
+            else; None for neither.
+
+    Attributes:
+        console: for the words; standard error where the result takes standard output.
+
+    Raises:
+        DrakeScrewError: there cannot be such a file.
+    """
+
+    def __init__(self, json: str | None = None) -> None:
+        self.console = Console(stderr=json == STANDARD_OUTPUT)
+        self._json = json
+        if json is not None and json != STANDARD_OUTPUT:
+            _check(Path(json))
+
+    def say(self, text: object) -> None:
+        """Print words as they are, however long."""
+        self.console.print(str(text), soft_wrap=True, markup=False, highlight=False)
+
+    def present(self, result: object) -> None:
+        """Print a result's words, and write it as JSON, if that is wanted.
+
+        Args:
+            result: a dataclass with a text of its own; its fields are the keys.
+        """
+        wrapped = self.console.is_terminal
+        self.console.print(str(result), soft_wrap=not wrapped, markup=False, highlight=False)
+        self.write(result)
+
+    def write(self, result: object) -> None:
+        """Write a verb's result as JSON, if that is wanted.
+
+        Args:
+            result: a dataclass; its fields are the keys.
+
+        Raises:
+            DrakeScrewError: the file cannot be written.
+        """
+        if self._json is None:
+            return
+        from pydantic_core import to_json
+
+        text = to_json(result, indent=2, inf_nan_mode="null").decode() + "\n"
+        if self._json == STANDARD_OUTPUT:
+            sys.stdout.write(text)
+            return
+        from drake_screw.files import write_text
+
+        try:
+            write_text(Path(self._json), text)
+        except OSError as error:
+            raise _unwritable(Path(self._json), str(error.strerror)) from error
+
+
+def _check(file: Path) -> None:
+    if file.is_dir():
+        raise _unwritable(file, "it is a folder")
+    if not file.parent.is_dir():
+        raise _unwritable(file, f"there is no folder '{file.parent}'")
+    if not os.access(file.parent, os.W_OK):
+        raise _unwritable(file, "its folder is read-only")
+
+
+def _unwritable(file: Path, why: str) -> DrakeScrewError:
+    return DrakeScrewError(
+        f"cannot be written: {why}",
+        remedy="Give --json a file in a folder that exists and that you may write to, or -.",
+        file=file,
+    )

@@ -1,0 +1,30 @@
+"""``drake-screw report``: a finished run, shown and drawn again from its directory."""
+
+from __future__ import annotations
+
+from drake_screw.commands.options import JsonOption, RunArgument, VerboseOption
+from drake_screw.commands.output import Output
+
+EXAMPLE = "drake-screw report runs/pouring/2026-11-22_10-15-00"
+
+
+def report(run: RunArgument, json: JsonOption = None, verbose: VerboseOption = False) -> None:
+    """Show a finished run, and write report.html.
+
+    Draws all of its pictures again, too.
+    """
+    output = Output(json)
+    from drake_screw.commands.console import show_event, show_summary
+    from drake_screw.runs.run import open_run, redraw
+    from drake_screw.runs.summary import summarize_run
+    from drake_screw.web.report_page import write_report
+
+    job = open_run(run)
+    events = list(job.replay())
+    summary = summarize_run(job)
+    for event in events:
+        show_event(event, job.setup.regions, output.console)
+    show_summary(summary, output.console)
+    redraw(job)
+    output.say(f"written: {write_report(job.reader)}")
+    output.write(summary)

@@ -1,0 +1,1 @@
+"""Runs on disk: carried out, carried on, and read again."""

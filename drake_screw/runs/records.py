@@ -1,0 +1,177 @@
+"""What the text files of a run hold, as `docs/file_formats.md` describes it."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Literal
+
+import numpy as np
+
+from drake_screw.acquisition import RoundFinished, Status, Suggestion
+from drake_screw.bandits import Verdict
+from drake_screw.demonstrations import Recording
+from drake_screw.runs.certificate import Certificate
+from drake_screw.tasks import Regions
+
+
+@dataclass(frozen=True)
+class VerdictRecord:
+    """The fields of a `Verdict`, its arrays (K,) as tuples."""
+
+    certified: bool
+    region: int
+    reason: str
+    claim: str
+    samples: tuple[int, ...]
+    failures: tuple[int, ...]
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+    level: float
+    simultaneous: bool
+    gap: float | None
+    coverage: float
+    attempted: bool
+    looks: int
+
+    @classmethod
+    def of(cls, verdict: Verdict) -> VerdictRecord:
+        """The record of a verdict."""
+        found = {field.name: getattr(verdict, field.name) for field in fields(cls)}
+        arrays = {k: tuple(v.tolist()) for k, v in found.items() if isinstance(v, np.ndarray)}
+        return cls(**found | arrays)
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict again."""
+        found: dict[str, Any] = asdict(self)
+        arrays = {name: np.array(v) for name, v in found.items() if isinstance(v, tuple)}
+        return Verdict(**found | arrays)
+
+
+@dataclass(frozen=True)
+class PlaceRecord:
+    """Where one object stands: m, m, rad."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+@dataclass(frozen=True)
+class SuggestionRecord:
+    """Where the next demonstration is wanted; `failed_segment` is counted from 1."""
+
+    region: int
+    region_name: str
+    objects: dict[str, PlaceRecord]
+    failed_segment: int | None
+
+    @classmethod
+    def of(cls, suggestion: Suggestion, regions: Regions) -> SuggestionRecord:
+        """The record of a suggestion in one of some regions."""
+        places = zip(regions.area.objects, suggestion.x_y_yaw.tolist(), strict=True)
+        return cls(
+            suggestion.region,
+            regions.name(suggestion.region),
+            {o.name: PlaceRecord(*place) for o, place in places},
+            None if suggestion.segment is None else suggestion.segment + 1,
+        )
+
+    def suggestion(self, regions: Regions) -> Suggestion:
+        """The suggestion again.
+
+        Raises:
+            KeyError: an object of the work area is missing.
+        """
+        places = [self.objects[o.name] for o in regions.area.objects]
+        return Suggestion(
+            self.region,
+            np.array([(place.x, place.y, place.yaw) for place in places]),
+            None if self.failed_segment is None else self.failed_segment - 1,
+            regions,
+        )
+
+
+@dataclass(frozen=True)
+class RoundRecord:
+    """What run.json holds of a round, counted from 1; the rest is in the round's folder."""
+
+    round: int
+    demonstrations: int
+    samples: tuple[int, ...]
+    failure_rates: tuple[float, ...]
+    weakest_region: int
+    certified: bool
+    reason: str
+    next_demonstration: SuggestionRecord | None
+    verdict: VerdictRecord
+
+    @classmethod
+    def of(cls, event: RoundFinished) -> RoundRecord:
+        """The record of a round."""
+        verdict, regions, place = event.verdict, event.regions, event.suggestion
+        return cls(
+            round=event.round + 1,
+            demonstrations=len(event.demonstrations),
+            samples=tuple(np.bincount(event.evaluation.region, minlength=regions.K).tolist()),
+            failure_rates=tuple(verdict.estimates.tolist()),
+            weakest_region=verdict.region,
+            certified=verdict.certified,
+            reason=verdict.reason,
+            next_demonstration=None if place is None else SuggestionRecord.of(place, regions),
+            verdict=VerdictRecord.of(verdict),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class DemonstrationRecord:
+    """What run.json holds of a demonstration; its recording is in `folder`."""
+
+    name: str
+    folder: str
+    source: str | None = None
+    robot: str | None = None
+    remark: str
+    notes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, recording: Recording, folder: str, remark: str) -> DemonstrationRecord:
+        """The record of a recording that is stored in a folder of the run."""
+        return cls(
+            name=recording.name,
+            folder=folder,
+            source=None if recording.source is None else str(recording.source),
+            robot=recording.robot,
+            remark=remark,
+            notes=recording.notes,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunRecord:
+    """What run.json holds."""
+
+    format: int
+    scenario: str
+    status: Status
+    reason: str | None
+    seed: int
+    strategy: str
+    beta: float
+    epsilon: float
+    delta: float
+    regions: int | Literal["adaptive"]
+    passed_in: tuple[str, ...] = ()
+    model: str
+    hashes: dict[str, str]
+    versions: dict[str, str]
+    started: str
+    finished: str | None
+    certificate: Certificate | None
+    demonstrations: tuple[DemonstrationRecord, ...]
+    rounds: tuple[RoundRecord, ...]
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run has come to its end, with or without a certificate."""
+        return self.status in (Status.CERTIFIED, Status.INSUFFICIENT)

@@ -1,0 +1,119 @@
+"""One plan of a run as a trajectory file that the robot can play."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
+from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.execution import time_plan
+from drake_screw.files import write_bytes
+from drake_screw.plugins import find, names
+from drake_screw.robot import Arm
+from drake_screw.runs.executions import (
+    collision_free_planner,
+    known_demonstrations,
+    placed,
+    why_not,
+)
+from drake_screw.runs.run import open_run
+from drake_screw.typing import PathLike
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A written trajectory; as text it is what ``drake-screw export`` prints.
+
+    Attributes:
+        output: the file.
+        format: of the file, a name that `plugins.find` knows as an exporter.
+        demonstration: name of the one whose plan it is.
+        segments: screw segments of the plan.
+        duration: s.
+        outside: whether the instance lies outside the work area.
+    """
+
+    output: Path
+    format: str
+    demonstration: str
+    segments: int
+    duration: float
+    outside: bool
+
+    def __str__(self) -> str:
+        lines = ["note: the instance lies outside the work area"] if self.outside else []
+        return "\n".join(
+            [
+                *lines,
+                f"planned with {self.demonstration}: {self.segments} screw segments, "
+                f"{self.duration:.1f} s",
+                f"written to {self.output}",
+            ]
+        )
+
+
+def write_trajectory(
+    run: PathLike, instance: Sequence[float], format: str, output: PathLike
+) -> Trajectory:
+    """Plan one instance with a run's demonstrations and write the timed plan.
+
+    Args:
+        run: its directory.
+        instance: x, y and perhaps yaw of each object.
+        format: of the file, a name that `plugins.find` knows as an exporter.
+        output: file to write; it is replaced.
+
+    Raises:
+        DrakeScrewError: there is no such format or it is of another robot, no plan for the
+            instance, or the file or the run cannot be used; nothing is written then.
+    """
+    writer = find("exporters", format)
+    opened = open_run(run)
+    setup = opened.setup
+    _check_robot(format, setup.workcell.arm)
+    demonstrations = known_demonstrations(opened)
+    x_y_yaw = placed(setup, instance)
+    X_WO = setup.area.X_WO(x_y_yaw)
+    planner = collision_free_planner(setup)
+    outcomes = planner.any_success(demonstrations, X_WO[None], setup.workcell.start)[0]
+    arm = setup.workcell.arm
+    if not outcomes.any_success:
+        why = why_not(outcomes, demonstrations, X_WO, planner, setup)
+        raise ScenarioError(
+            f"no demonstration of this run gives a plan there: {why}",
+            remedy="Choose another instance, or carry the run on with more demonstrations.",
+        )
+    chosen = demonstrations[int(outcomes.best_attempt)]
+    plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start)
+    timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), chosen.transfer(X_WO)]), arm)
+    output = Path(output)
+    try:
+        write_bytes(output, writer(timed, arm))
+    except OSError as error:
+        raise RunDirectoryError(
+            f"cannot be written: {error.strerror}",
+            remedy="Give an --output in a folder that exists and that you may write to.",
+            file=output,
+        ) from error
+    return Trajectory(
+        output=output,
+        format=format,
+        demonstration=chosen.name,
+        segments=len(timed.segments),
+        duration=timed.duration,
+        outside=not setup.area.contains(x_y_yaw),
+    )
+
+
+def _check_robot(format: str, arm: Arm) -> None:
+    foreign = [name for name in arm.joint_names if name not in BAXTER_COLUMNS]
+    if format == "baxter-csv" and foreign:
+        others = " or ".join(f"--format {name}" for name in names("exporters") if name != format)
+        raise ScenarioError(
+            f"the format {format} is for Baxter, which has no joint '{foreign[0]}'",
+            remedy=f"Give {others}.",
+        )

@@ -1,0 +1,173 @@
+"""What a scenario file may say of a run: what to show, who demonstrates, how to plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic.config import JsonDict
+from pydantic_core import InitErrorDetails
+
+from drake_screw.plugins import BUILT_IN, is_plugged_in
+from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.values import (
+    METRES,
+    RADIANS,
+    Folder,
+    Option,
+    Options,
+    PartOf,
+    Positive,
+    Probability,
+)
+
+
+class AdaptiveBlock(Block):
+    smallest: Annotated[float, Field(ge=1e-9, lt=1)] = 1 / 256
+    """share of the work area that the smallest cells told apart take up"""
+    level: Probability = 0.5
+    """failure probability that a cell of that size may have without being noticed"""
+
+
+class RegionsBlock(Block):
+    grid: dict[str, Annotated[int, Field(ge=1)]] | None = None
+    """number of cells per axis: x, y, yaw of the only object, or <object>.x and so on; an axis not
+    named has one cell"""
+    adaptive: AdaptiveBlock | None = None
+    """cells that are halved wherever something fails, instead of a grid; they bring a strategy of
+    their own"""
+
+    def broken_rules(self) -> Iterator[Problem]:
+        given = [name for name in ("grid", "adaptive") if getattr(self, name) is not None]
+        if len(given) != 1:
+            yield Problem(
+                (),
+                f"expected either grid or adaptive, found {' and '.join(given) or 'neither'}",
+                "Write `grid: {x: 4, y: 4}` for cells of one size, or `adaptive: {}` for cells "
+                "that are halved wherever something fails.",
+            )
+
+
+class CoverageBlock(Block):
+    beta: Probability = 0.95
+    """probability of success wanted in every region"""
+    epsilon: Annotated[float, Field(ge=1e-4, lt=1)] = 0.02
+    """accuracy to which failure probabilities are measured; below 1 - beta"""
+    delta: Probability = 0.05
+    """probability that the measurement may be wrong: 1 - confidence"""
+    strategy: Annotated[str, PartOf("strategies")] = "eprocess"
+    """the bandit that measures coverage"""
+    options: Options = Field(default={})
+    """options of the strategy"""
+
+    def broken_rules(self) -> Iterator[Problem]:
+        slack = 1 - self.beta
+        if self.epsilon >= slack - 1e-12:
+            yield Problem(
+                ("epsilon",),
+                f"the run could never stop: epsilon = {self.epsilon:g} is not below "
+                f"1 - beta = {slack:g}, so no measurement could tell that a region is good enough",
+                f"Choose an epsilon below {slack:g}, or a smaller beta.",
+            )
+
+
+class DemonstrationsBlock(Block):
+    initial: Annotated[
+        Annotated[int, Field(ge=0), Tag("count")] | Annotated[tuple[Folder, ...], Tag("folders")],
+        Discriminator(lambda value: "folders" if isinstance(value, tuple) else "count"),
+    ] = 1
+    """how many demonstrations to draw at random places before the first round, or a list of
+    recording folders, relative to the scenario file"""
+    budget: Annotated[int, Field(ge=1)] = 12
+    """most demonstrations in total, the initial ones included"""
+
+    @property
+    def initial_count(self) -> int:
+        return self.initial if isinstance(self.initial, int) else len(self.initial)
+
+    def broken_rules(self) -> Iterator[Problem]:
+        if self.budget < self.initial_count:
+            yield Problem(
+                ("budget",),
+                f"expected at least the {self.initial_count} initial demonstrations, "
+                f"found {self.budget}",
+            )
+
+
+def _only_own_keys_if_built_in(schema: JsonDict) -> None:
+    """Adds to the JSON Schema of a teacher what `TeacherBlock` checks by itself."""
+    keys = schema["properties"]
+    assert isinstance(keys, dict)
+    schema["if"] = {"properties": {"kind": {"enum": list(BUILT_IN["teachers"])}}}
+    schema["then"] = {"propertyNames": {"enum": list(keys)}}
+
+
+class TeacherBlock(Block):
+    model_config = ConfigDict(extra="allow", json_schema_extra=_only_own_keys_if_built_in)
+    __pydantic_extra__: dict[str, Option] = Field(init=False)
+
+    kind: Annotated[str, PartOf("teachers")]
+    """who gives the demonstrations"""
+    motion: Annotated[str, PartOf("motions")] | None = None
+    """what a simulated teacher shows; for that kind only"""
+    folder: Folder | None = None
+    """library of a recorded teacher, or a folder an interactive one watches for recordings;
+    relative to the scenario file"""
+
+    format: Annotated[str, PartOf("recording_formats")] = "folder"
+    """format of recordings: in `folder` of a recorded teacher, and in `demonstrations.initial`"""
+
+    @property
+    def options(self) -> dict[str, Option]:
+        """The further keys of a teacher that is not built in; texts as they are written."""
+        return dict(self.__pydantic_extra__)
+
+    def broken_rules(self) -> Iterator[Problem]:
+        if is_plugged_in("teachers", self.kind):
+            return
+        needs = {"simulated": "motion", "recorded": "folder"}.get(self.kind)
+        lacks = {"simulated": "folder"}.get(self.kind, "motion")
+        if needs is not None and getattr(self, needs) is None:
+            yield Problem((needs,), f"missing; a {self.kind} teacher needs it")
+        if getattr(self, lacks) is not None:
+            yield Problem((lacks,), f"a {self.kind} teacher has no {lacks}")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _only_own_keys_if_built_in(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            return data
+        kind = data.get("kind")
+        if isinstance(kind, str) and is_plugged_in("teachers", kind):
+            return data
+        errors = [
+            InitErrorDetails(type="extra_forbidden", loc=(name,), input=value)
+            for name, value in data.items()
+            if name not in cls.model_fields
+        ]
+        if errors and "kind" not in data:
+            errors.append(InitErrorDetails(type="missing", loc=("kind",), input=data))
+        if errors:
+            raise ValidationError.from_exception_data(cls.__name__, errors)
+        return data
+
+
+class SegmentationBlock(Block):
+    spacing: Annotated[Positive, METRES] = 0.005
+    """smallest distance between poses kept of a recording"""
+    position_tolerance: Annotated[Positive, METRES] = 0.015
+    """largest distance of the recorded hand from a constant screw"""
+    rotation_tolerance: Positive = 0.15
+    """largest chordal quaternion distance of the recorded hand from a constant screw"""
+    min_progress: Positive = 0.001
+    """smallest advance of the screw parameter between successive poses"""
+    region_of_interest: Annotated[float, Field(ge=1)] = 1.5
+    """guiding poses lie within this many times the smallest distance of hand and object"""
+
+
+class PlannerBlock(Block):
+    tolerance: Annotated[Annotated[float, Field(ge=1e-9, lt=0.1)], RADIANS] = 1e-4
+    """error per step of the joint path"""
+    collision: bool = False
+    """whether a plan that touches the robot itself, the table or an object fails"""

@@ -1,0 +1,125 @@
+"""What a scenario file may say of the workcell: arms, table and objects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Annotated
+
+from pydantic import Field
+
+from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.values import (
+    METRES,
+    RADIANS,
+    Angles,
+    Interval,
+    ModelName,
+    Name,
+    Positive,
+)
+from drake_screw.tasks import AXES
+
+
+class RobotBlock(Block):
+    model: ModelName
+    """shipped model's name, or the path of a model file, relative to the scenario file"""
+    joints: tuple[str, ...]
+    """names of the arm's joints, from base to hand"""
+    end_effector: str
+    """name of the frame that the demonstrations move"""
+    start: Annotated[tuple[float, ...], RADIANS]
+    """joint angles from which every plan starts, in the order of `joints`"""
+    base: str = "base"
+    """name of the frame fixed to the world's origin"""
+    parked: Annotated[Angles, RADIANS] = Field(default={})
+    """where other joints rest; joints not named rest at the model's default"""
+
+    def broken_rules(self) -> Iterator[Problem]:
+        yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
+        if len(self.start) != len(self.joints):
+            yield Problem(
+                ("start",),
+                f"expected {len(self.joints)} angles, one for each joint, found {len(self.start)}",
+                f"Joints: {', '.join(self.joints)}",
+            )
+
+
+class RecordedOnBlock(Block):
+    model: ModelName
+    """shipped model's name, or the path of a model file, relative to the scenario file"""
+    joints: tuple[str, ...]
+    """names of that arm's joints, from base to hand; the recordings have a column for each"""
+    end_effector: str
+    """name of that arm's frame which `robot.end_effector` stands for: same axes, same grip"""
+    base: str = "base"
+    """name of the frame in which the recordings have the objects' poses; its z points up"""
+    parked: Annotated[Angles, RADIANS] = Field(default={})
+    """where other joints rested; joints not named rested at the model's default"""
+
+    def broken_rules(self) -> Iterator[Problem]:
+        remedy = "Its angles are in the recordings; leave it out."
+        yield from _joints(self.joints, self.parked, remedy)
+
+
+class TableBlock(Block):
+    center: Annotated[tuple[float, float], METRES]
+    """x, y of the centre of the table's top"""
+    size: Annotated[tuple[Positive, Positive], METRES]
+    """extent of the table's top along x, y"""
+    top: Annotated[float, METRES]
+    """height of the table's upper face"""
+    thickness: Annotated[Positive, METRES] = 0.04
+    """thickness of the table's top"""
+
+
+class ObjectBlock(Block):
+    name: Name
+    """name of the object: letters, digits, - and _"""
+    x: Annotated[Interval, METRES]
+    """where the object's frame may lie along x: [lower, upper]"""
+    y: Annotated[Interval, METRES]
+    """where the object's frame may lie along y: [lower, upper]"""
+    yaw: Annotated[Interval, RADIANS] = Interval(0.0, 0.0)
+    """how the object may be turned about z: [lower, upper]"""
+    z: Annotated[float, METRES]
+    """height of the object's frame"""
+    radius: Annotated[Positive, METRES]
+    """radius of the object, to draw it and for collisions"""
+    height: Annotated[Positive, METRES]
+    """height of the object, to draw it and for collisions"""
+
+    def broken_rules(self) -> Iterator[Problem]:
+        for axis in AXES:
+            interval = getattr(self, axis)
+            if not math.isfinite(interval.upper - interval.lower):
+                yield Problem((axis,), "the range is too wide")
+        if self.yaw.upper - self.yaw.lower > 2 * math.pi + 1e-9:
+            yield Problem(
+                ("yaw",),
+                "the range is wider than a full turn",
+                "Angles are in rad; a full turn is [-3.141592653589793, 3.141592653589793].",
+            )
+
+
+def repeated(names: Iterable[str]) -> Iterator[tuple[int, str]]:
+    """Places and names of those that are there before."""
+    seen = set()
+    for index, name in enumerate(names):
+        if name in seen:
+            yield index, name
+        seen.add(name)
+
+
+def _joints(joints: tuple[str, ...], parked: Iterable[str], instead: str) -> Iterator[Problem]:
+    if not joints:
+        yield Problem(("joints",), "expected at least one joint, found none")
+    for index, name in repeated(joints):
+        yield Problem(("joints", index), f"joint '{name}' is listed twice")
+    for name in parked:
+        if name in joints:
+            yield Problem(
+                ("parked", name),
+                f"joint '{name}' belongs to the arm, so it cannot be parked",
+                instead,
+            )

@@ -1,0 +1,1 @@
+"""Studies: many runs of a scenario, shared out among processes, and what they show."""

@@ -1,0 +1,185 @@
+"""What the panel beside an inspected attempt says, as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from drake_screw.planning import Cause, Outcomes
+from drake_screw.runs.reader import RunReader
+from drake_screw.tasks import WorkArea
+from drake_screw.typing import Array
+from drake_screw.visualization.attempt import (
+    AHEAD,
+    DONE,
+    FAILED,
+    describe_segment,
+    headline,
+    unit,
+)
+from drake_screw.visualization.inspector import AXIS, Drawn
+from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
+from drake_screw.visualization.rounds import headline as round_headline
+from drake_screw.visualization.rounds import sample
+from drake_screw.visualization.scene import MOST_DOTS
+from drake_screw.web.charts import joint_strip, map_words, work_area_map
+from drake_screw.web.selection import Selection, steps
+
+KEY = (
+    (STATUS_COLORS[DONE], "screw segment done"),
+    (STATUS_COLORS[FAILED], "failed: the segment, the arm's ghost, the joint"),
+    (STATUS_COLORS[AHEAD], "never reached"),
+    (AXIS, "screw axis; the arrow around it is its turn"),
+)
+"""What the colours of a drawn attempt mean."""
+
+
+def panel_state(
+    reader: RunReader, selection: Selection, drawn: Mapping[int, Drawn], *, live: bool
+) -> dict[str, Any]:
+    """All that the panel shows.
+
+    Args:
+        reader: the run.
+        selection: what is looked at.
+        drawn: attempts at the selected instance that are drawn, by their demonstration.
+        live: whether a program answers the panel's messages.
+    """
+    event = reader.event(selection.round)
+    regions, rates = event.regions, event.verdict.estimates
+    here, attempts = None, []
+    instance: dict[str, Any] = {"key": None, "where": "no instance", "which": ""}
+    if selection.instance is not None:
+        here = event.evaluation.x_y_yaw[selection.instance]
+        found = reader.outcomes(selection.round, selection.instance)
+        attempts = [
+            attempt_entry(number, demonstration.name, found[number], drawn.get(number))
+            for number, demonstration in enumerate(event.demonstrations)
+        ]
+        instance = {
+            "key": [selection.round, selection.instance],
+            "where": where(reader.setup.area, here),
+            "which": describe_instance(reader, selection),
+        }
+    return {
+        "live": live,
+        "title": reader.setup.scenario.name,
+        "round": selection.round,
+        "rounds": [{"value": r, "text": f"round {r + 1}"} for r in range(reader.rounds)],
+        "region": selection.region,
+        "regions": [
+            {"value": None, "text": "all regions"},
+            *(
+                {"value": j, "text": f"region {j}: {regions.name(j)}, {rates[j]:.1%} fail"}
+                for j in np.unique(reader.catalogue(selection.round).region).tolist()
+            ),
+        ],
+        "instance": instance,
+        "steps": list(steps(reader, selection)),
+        "attempts": attempts,
+        "selected": selection.demonstration,
+        "headline": round_headline(event),
+        "map": work_area_map(event, regions, here=here),
+        "map_words": map_words(event, sample(event.evaluation, MOST_DOTS)),
+    }
+
+
+def attempt_entry(number: int, name: str, found: Outcomes, drawn: Drawn | None) -> dict[str, Any]:
+    """A line of the panel's list of demonstrations.
+
+    Args:
+        number: of the demonstration, from 0.
+        name: of the demonstration.
+        found: of shape (), what the run found.
+        drawn: the attempt, if it is drawn; its own outcome is shown then.
+    """
+    outcome = found if drawn is None else drawn.attempt.plan.outcome
+    cause = Cause(int(outcome.cause))
+    words = OUTCOME_NAMES[cause]
+    if cause not in (Cause.SUCCESS, Cause.NOT_TRIED):
+        words += f" in segment {int(outcome.segment) + 1}, {float(outcome.fraction):.0%} along it"
+    return {
+        "number": number + 1,
+        "name": name,
+        "color": OUTCOME_COLORS[cause],
+        "words": words,
+        "drawn": None if drawn is None else drawn_state(drawn),
+    }
+
+
+def drawn_state(drawn: Drawn) -> dict[str, Any]:
+    """A drawn attempt as the panel's script takes it."""
+    attempt, samples = drawn.attempt, drawn.samples
+    arm, segment = attempt.arm, attempt.plan.segment[samples]
+    failed = attempt.failed_segment
+    focus = failed if failed is not None else 0
+    start = int(np.argmax(segment >= focus)) if (segment >= focus).any() else len(segment) - 1
+    counts = np.bincount(segment, minlength=len(attempt.guides))
+    return {
+        "path": drawn.path,
+        "headline": f"Demonstration {attempt.number + 1} {headline(attempt)}.",
+        "color": STATUS_COLORS[DONE if attempt.plan.success else FAILED],
+        "segments": [
+            {
+                "status": status,
+                "color": STATUS_COLORS[status],
+                "words": describe_segment(attempt, i),
+                "first": int(np.argmax(segment >= i)) if counts[i] else -1,
+                "share": int(counts[i]),
+            }
+            for i, status in enumerate(attempt.status)
+        ],
+        "joints": [
+            {
+                "name": name,
+                "unit": unit(arm, j),
+                "lower": float(arm.lower[j]),
+                "upper": float(arm.upper[j]),
+                "strip": joint_strip(attempt, j, samples),
+            }
+            for j, name in enumerate(arm.joint_names)
+        ],
+        "q": np.round(attempt.plan.q[samples], 5).tolist(),
+        "at": [
+            [int(i), round(float(s), 4)]
+            for i, s in zip(segment, attempt.plan.s[samples], strict=True)
+        ],
+        "start": start,
+        "moving": {path: _columns(X) for path, X in drawn.moving.items()},
+    }
+
+
+def describe_instance(reader: RunReader, selection: Selection) -> str:
+    """An instance's number, its region, and its place among those that fail."""
+    assert selection.instance is not None
+    book = reader.catalogue(selection.round)
+    event = reader.event(selection.round)
+    region = int(event.evaluation.region[selection.instance])
+    words = f"instance {selection.instance:,} of {len(event.evaluation.x_y_yaw):,}, region {region}"
+    place = book.find(selection.instance)
+    if place is not None and place < book.failing:
+        order = book.of_region(selection.region)
+        failing = order[order < book.failing]
+        among = "" if selection.region is None else " in this region"
+        words += f"; failing, {int((failing < place).sum()) + 1:,} of {len(failing):,}{among}"
+    elif event.evaluation.outcomes[selection.instance].success.any():
+        words += "; succeeds"
+    if place is not None and place == book.suggested():
+        words += "; the suggested place for the next demonstration"
+    return words
+
+
+def where(area: WorkArea, x_y_yaw: Array) -> str:
+    """Where the objects of an instance (k, 3) are, in words."""
+    return ", ".join(
+        f"{o.name} at x {x:.3f} m, y {y:.3f} m"
+        + (f", yaw {yaw:.2f} rad" if o.lower[2] != o.upper[2] else "")
+        for o, (x, y, yaw) in zip(area.objects, x_y_yaw.tolist(), strict=True)
+    )
+
+
+def _columns(X: Array) -> list[list[float]]:
+    """Poses (m, 4, 4) in three.js's order."""
+    return np.round(np.swapaxes(X, -1, -2).reshape(len(X), 16), 5).tolist()

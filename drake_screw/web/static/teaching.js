@@ -1,0 +1,60 @@
+// The panel at which a person leads the arm.
+const dragging = new Set();
+let rows = null;
+function slider(table, name, low, high, changed) {
+  const row = make("tr"), input = make("input"), value = make("td"), margin = make("td");
+  Object.assign(input, { type: "range", min: low, max: high, step: (high - low) / 2000 });
+  input.setAttribute("aria-label", name);
+  let last = 0, later;
+  const pass = () => { last = Date.now(); changed(Number(input.value)); };
+  input.oninput = () => {
+    clearTimeout(later);
+    if (Date.now() - last > 30) pass(); else later = setTimeout(pass, 30);
+  };
+  input.onpointerdown = () => dragging.add(input);
+  input.onpointerup = () => dragging.delete(input);
+  const cell = make("td");
+  cell.append(input);
+  row.append(make("td", name), cell, value, margin);
+  table.append(row);
+  return { row, input, value, margin };
+}
+// While nobody is asked for anything, the lists of a state are empty.
+function build(state) {
+  rows = {
+    hand: state.hand.map((h, i) => slider(element("hand"), h.name, h.low, h.high,
+      (value) => send({ hand: i, value }))),
+    arm: state.joints.map((j, i) => slider(element("arm"), j.name, j.low, j.high,
+      (value) => send({ joint: i, value }))),
+  };
+}
+listen((state) => {
+  element("lead").hidden = !state.joints.length;
+  if (!rows && state.joints.length) build(state);
+  element("title").textContent = state.title;
+  element("headline").textContent = state.headline;
+  element("message").textContent = state.message;
+  element("hint").textContent = state.hint;
+  element("clock").textContent = state.clock;
+  for (const button of document.querySelectorAll("[data-do]")) {
+    button.disabled = !state.can.includes(button.dataset.do);
+    button.onclick = () => send({ do: button.dataset.do });
+  }
+  state.hand.forEach((h, i) => {
+    const row = rows.hand[i];
+    if (!dragging.has(row.input)) row.input.value = h.value;
+    row.value.textContent = h.value.toFixed(3) + " " + h.unit;
+    row.input.disabled = !state.leading;
+  });
+  state.joints.forEach((j, i) => {
+    const row = rows.arm[i];
+    if (!dragging.has(row.input)) row.input.value = j.value;
+    row.value.textContent = j.value.toFixed(3);
+    row.margin.textContent = j.margin.toFixed(3) + " " + j.unit;
+    row.row.className = j.margin < 0.01 ? "limit" : j.margin < 0.1 ? "near" : "";
+    row.input.disabled = !state.leading;
+  });
+  element("segments").replaceChildren(
+    ...state.segments.map((segment, i) => entry(i + 1, segment.color, segment.words)));
+});
+window.dispatchEvent(new Event("resize"));

@@ -1,0 +1,58 @@
+"""``drake-screw evaluate``: a code for each instance and demonstration."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+
+def test_evaluate_writes_a_code_for_each_instance_and_demonstration(
+    command, library, places
+) -> None:
+    code, out, _ = command(
+        "evaluate", "pouring", "--demonstrations", library, "--instances", places,
+        "--output", "out.csv",
+    )  # fmt: skip
+    assert code == 0
+    rows = [line.split(",") for line in Path("out.csv").read_text().splitlines()]
+    assert rows[0] == ["x", "y", "demo_01", "demo_02", "demo_03"]
+    assert [row[:2] for row in rows[1:]] == [["0.8", "0.1"], ["0.9", "0.3"], ["1.07", "-0.23"]]
+    cells = [cell for row in rows[1:] for cell in row[2:]]
+    assert all(re.fullmatch(r"0:0|[1-9]:([1-7]|n|c)", cell) for cell in cells)
+    assert rows[1][2] == "0:0", "a demonstration solves the place it was given at"
+    assert "3 instances x 3 demonstrations" in out
+
+
+def test_another_model_needs_only_the_arm(command, library, places, shared) -> None:
+    calibrated = shared / "reference" / "baxter_left_calibrated.sdf"
+    code, _, err = command(
+        "evaluate", "pouring", "--demonstrations", library, "--instances", places,
+        "--output", "out.csv", "--model", calibrated,
+    )  # fmt: skip
+    assert (code, err) == (0, "")
+    assert Path("out.csv").read_text().count("0:0") >= 2
+
+
+@pytest.mark.parametrize("task", ["pouring", "scooping"])
+def test_evaluate_agrees_with_the_outcomes_of_another_planner(
+    command, shared, task, tmp_path
+) -> None:
+    lines = (shared / "reference" / f"outcomes_{task}.csv").read_text().splitlines()
+    theirs = [line.split(",") for line in lines]
+    places = tmp_path / "places.csv"
+    places.write_text("\n".join(",".join(row[:2]) for row in theirs) + "\n")
+    code, _, _ = command(
+        "evaluate", task, "--demonstrations", shared / "demos" / task, "--instances", places,
+        "--output", "out.csv", "--model", shared / "reference" / "baxter_left_calibrated.sdf",
+    )  # fmt: skip
+    assert code == 0
+    ours = [line.split(",") for line in Path("out.csv").read_text().splitlines()]
+    assert ours[0] == theirs[0]
+    a, b = (np.array([row[2:] for row in rows[1:]]) for rows in (ours, theirs))
+    assert ((a == "0:0") == (b == "0:0")).mean() >= 0.994
+    both = (a != "0:0") & (b != "0:0")
+    segment = [np.array([c.split(":")[0] for c in codes[both]]) for codes in (a, b)]
+    assert (segment[0] == segment[1]).mean() >= 0.97

@@ -1,0 +1,161 @@
+"""Wrong input ends with exit code 2 and one message, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.commands.conftest import Command
+
+
+def spoil(library: Path, to: Path, change) -> Path:
+    shutil.copytree(library, to)
+    file = to / "demo_02" / "joint_angles.csv"
+    lines = file.read_text().splitlines()
+    file.write_text("\n".join(change(lines)) + "\n")
+    return to
+
+
+def in_degrees(lines):
+    rows = [line.split(",") for line in lines[1:]]
+    return [lines[0], *(",".join([r[0], *(str(float(v) * 57.3) for v in r[1:])]) for r in rows)]
+
+
+def with_nan(lines):
+    cells = lines[50].split(",")
+    return [*lines[:50], ",".join([cells[0], "nan", *cells[2:]]), *lines[51:]]
+
+
+def reversed_time(lines):
+    return [lines[0], *reversed(lines[1:])]
+
+
+def without_column(lines):
+    return [",".join(line.split(",")[:3] + line.split(",")[4:]) for line in lines]
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (in_degrees, r"joint_angles\.csv:\d+: .*look like degrees"),
+        (with_nan, r"joint_angles\.csv:51: not a finite number: left_s0"),
+        (reversed_time, r"joint_angles\.csv:3: time runs backwards"),
+        (without_column, r"joint_angles\.csv:1: no column 'left_e0'"),
+    ],
+)
+def test_bad_recordings_are_refused_with_their_place(
+    command, library, tmp_path, change, expected
+) -> None:
+    spoilt = spoil(library, tmp_path / "spoilt", change)
+    code, out, err = command("run", "pouring", "--demonstrations", spoilt)
+    assert code == 2
+    assert re.search(expected, err)
+    assert (out, Path("runs").exists()) == ("", False)
+
+
+RUN = ["run", "pouring"]
+EVALUATE = ["evaluate", "pouring", "--demonstrations", "nowhere"]
+
+
+@pytest.mark.parametrize(
+    ("args", "expected"),
+    [
+        (["run", "puring"], "Did you mean 'pouring'"),
+        (["run", "missing.yaml"], "missing.yaml"),
+        (["run", "pouring", "--set", "coverage.betta=0.9"], "Did you mean 'beta'"),
+        (["run", "pouring", "--set", "coverage.epsilon=0.05"], "epsilon"),
+        (["run", "pouring", "--set", "robot.end_effector=left_hnd"], "Did you mean 'left_hand'"),
+        (["run", "pouring", "--set", "robot.joints.0=left_s9"], "no joint 'left_s9'"),
+        (["run", "pouring", "--set", "objects.0.x=[3.0, 4.0]"], "out of reach"),
+        (["run", "pouring", "--set", "robot.start.1=1.5"], "outside its limits"),
+        (["run", "pouring", "--model", "nothing.sdf"], "nothing.sdf"),
+        (["run", "pouring", "--demonstrations", "nowhere"], "no such folder"),
+        (["run", "pouring", "--set", "coverage.options.rope=1"], "rope"),
+        (["run"], "no scenario"),
+        (["run", "--resume", "nowhere"], "not a run directory"),
+        (["run", "pouring", "--host", "0.0.0.0"], "this run has none"),
+        (["run", "pouring", "--meshcat", "--port", "99999"], "cannot serve on localhost"),
+        (["run", "pouring", "--set", "meshcat=2"], "meshcat"),
+        (["run", "pouring", "--resume", "nowhere"], "--resume goes alone"),
+        (["report", "nowhere"], "not a run directory"),
+        (["fly"], "No such command"),
+        (["runn", "pouring"], "run"),
+        ([*RUN, "--set", "nonsense"], "expected key.path=value"),
+        ([*RUN, "--set", "seed=[1"], "seed=[1"),
+        ([*RUN, "--seed", "seven"], "--seed"),
+        ([*RUN, "--demonstrations", "places.csv"], "places.csv"),
+        ([*RUN, "--meshcat", "--host", "192.0.2.1"], "cannot serve on 192.0.2.1"),
+        ([*RUN, "--json", "nowhere/result.json"], "there is no folder 'nowhere'"),
+        ([*RUN, "--json", "."], "it is a folder"),
+        (["run", "."], "is a folder"),
+        (["study", "pouring", "--regions", "1,x"], "not a list of numbers of regions"),
+        (["study"], "no scenario"),
+        (["study", "--resume", "nowhere"], "not a study directory"),
+        (["check", "places.csv"], "places.csv"),
+        (["check", "pouring", "--model", "places.csv"], "places.csv"),
+        (["inspect", "nowhere"], "not a run directory"),
+        (["inspect", "places.csv"], "not a run directory"),
+        (["execute", "."], "not a run directory"),
+        (["execute", ".", "--per-region", "0"], "per-region"),
+        (["execute", ".", "--graphviz", "--json", "x.json"], "--graphviz executes nothing"),
+        (["export", "nowhere", "--instance", "0.9", "0.3", "--output", "x"], "not a run directory"),
+        (["export", "nowhere", "--instance", "0.9", "--output", "x"], "instance"),
+        ([*EVALUATE, "--instances", "nowhere.csv", "--output", "x.csv"], "nowhere.csv"),
+        ([*EVALUATE, "--instances", ".", "--output", "x.csv"], "cannot be read"),
+        ([*EVALUATE, "--instances", "places.csv", "--output", "x.csv"], "nowhere"),
+    ],
+)
+def test_wrong_input_ends_with_2_and_one_message(
+    command: Command, places: Path, args: list[str], expected: str
+) -> None:
+    code, out, err = command(*args)
+    assert (code, out) == (2, "")
+    assert expected in err
+    assert "Traceback" not in err
+    assert list(Path().iterdir()) == [Path("places.csv")]
+
+
+@pytest.mark.parametrize(
+    ("verb", "args", "expected"),
+    [
+        ("run", ["--resume"], "has ended"),
+        ("inspect", ["--round", "99", "--html", "x.html"], "no round 99"),
+        ("inspect", ["--round", "one"], "--round"),
+        ("inspect", ["--instance", "-3", "--html", "x.html"], "no instance -3"),
+        ("inspect", ["--html", "x.csv"], "would be overwritten"),
+        ("inspect", ["--port", "99999"], "cannot serve"),
+        ("execute", ["--instance", "a", "b"], "a"),
+        ("execute", ["--instance", "nan", "0.3"], "x and y in m"),
+        (
+            "export",
+            ["--instance", "0.9", "0.3", "--output", "x", "--format", "csv"],
+            "no export format 'csv'",
+        ),
+        ("export", ["--instance", "5", "5", "--output", "x"], "no demonstration of this run gives"),
+        ("export", ["--instance", "0.9", "0.3", "--output", "."], "cannot be written"),
+        ("export", ["--instance", "0.9", "0.3", "--output", "no/x"], "cannot be written"),
+        ("report", ["--json", "no/x.json"], "there is no folder 'no'"),
+    ],
+)
+def test_wrong_wishes_of_a_run_leave_nothing(
+    command: Command, certified: Path, verb: str, args: list[str], expected: str
+) -> None:
+    before = sorted(certified.rglob("*"))
+    given = [args[0], str(certified), *args[1:]] if args[0] == "--resume" else [certified, *args]
+    code, out, err = command(verb, *given)
+    assert (code, out) == (2, "")
+    assert expected in " ".join(err.split())
+    assert "Traceback" not in err
+    assert list(Path().iterdir()) == []
+    assert sorted(certified.rglob("*")) == before
+
+
+def test_an_output_that_is_taken_is_refused(command: Command, certified: Path) -> None:
+    for verb in ("run", "study"):
+        code, out, err = command(verb, "pouring", "--output", certified, "--json", "x.json")
+        assert (code, out) == (2, "")
+        assert "exists already" in err
+    assert list(Path().iterdir()) == []
