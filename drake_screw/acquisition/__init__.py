@@ -18,6 +18,7 @@ from drake_screw.acquisition.recorded_teacher import RecordedTeacher
 from drake_screw.acquisition.suggestion import random_suggestion, suggest
 from drake_screw.acquisition.teacher import Lesson, Teacher
 from drake_screw.acquisition.tree_evaluator import TreeEvaluator
+from drake_screw.acquisition.usable_lessons import UsableLessons
 
 __all__ = [
     "DemonstrationAdded",
@@ -35,6 +36,7 @@ __all__ = [
     "Suggestion",
     "Teacher",
     "TreeEvaluator",
+    "UsableLessons",
     "acquire",
     "random_suggestion",
     "suggest",

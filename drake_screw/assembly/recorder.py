@@ -18,6 +18,7 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from drake_screw.demonstrations import (
     Demonstration,
+    FaithfulConfig,
     Recording,
     SegmentationConfig,
     demonstration_from_recording,
@@ -37,6 +38,19 @@ FOLDER = "folder"
 """The usual format of a recording."""
 
 _T = TypeVar("_T")
+
+
+@dataclass(frozen=True)
+class Learning:
+    """How recordings become demonstrations.
+
+    Attributes:
+        segmentation: how paths are cut into screws.
+        task_objects: names of the objects that the hand works on; found by distance where empty.
+    """
+
+    segmentation: SegmentationConfig | FaithfulConfig
+    task_objects: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -123,9 +137,20 @@ class Recorder:
         """
         return recording.X_WO if self.robot is None else self._shift(recording) @ recording.X_WO
 
-    def learn(self, recording: Recording, config: SegmentationConfig) -> Demonstration:
-        """The recording's demonstration, its poses in the world as `seen`."""
-        learned = demonstration_from_recording(recording, self.arm, config)
+    def learn(self, recording: Recording, learning: Learning) -> Demonstration:
+        """The recording's demonstration, its poses in the world as `seen`.
+
+        Raises:
+            NoMotionKept: of the recording, as `demonstration_from_recording` says.
+            RecordingError: it names an object that there is not.
+        """
+        learned = demonstration_from_recording(
+            recording,
+            self.arm,
+            learning.segmentation,
+            names=[item.name for item in self.area.objects],
+            task_objects=learning.task_objects,
+        )
         if self.robot is None:
             return learned
         X = self._shift(recording)
@@ -174,13 +199,13 @@ class ForeignRecordings:
 
     Attributes:
         recorder: of that robot.
-        segmentation: how they are cut into screws.
+        learning: how they become demonstrations.
         planner: of the arm that is planned for.
         start: (n,) rad or m, where its plans start.
     """
 
     recorder: Recorder
-    segmentation: SegmentationConfig
+    learning: Learning
     planner: Planner
     start: Array
     _learned: dict[tuple[Path | None, str], Demonstration] = field(default_factory=dict, repr=False)
@@ -193,7 +218,7 @@ class ForeignRecordings:
         """Whether each gives a plan at a task instance (k, 3)."""
         for recording in recordings:
             if _key(recording) not in self._learned:
-                learned = self.recorder.learn(recording, self.segmentation)
+                learned = self.recorder.learn(recording, self.learning)
                 self._learned[_key(recording)] = learned
         demonstrations = [self._learned[_key(recording)] for recording in recordings]
         X_WO = self.recorder.area.X_WO(x_y_yaw)[None]

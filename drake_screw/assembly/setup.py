@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 from drake_screw.acquisition import Evaluator, Teacher, TreeEvaluator
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
-from drake_screw.assembly.recorder import Recorder
+from drake_screw.assembly.recorder import Learning, Recorder
 from drake_screw.assembly.sanity import check_reach, check_start
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
-from drake_screw.demonstrations import Demonstration, Recording, SegmentationConfig
+from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.planning import BatchPlanner, Outcomes, Planner
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.plugins import find
@@ -184,16 +184,9 @@ class Setup:
         return self.tree or self.strategy
 
     @cached_property
-    def segmentation(self) -> SegmentationConfig:
-        """How recordings are cut into screws."""
-        block = self.scenario.segmentation
-        return SegmentationConfig(
-            block.spacing,
-            block.position_tolerance,
-            block.rotation_tolerance,
-            block.min_progress,
-            block.region_of_interest,
-        )
+    def learning(self) -> Learning:
+        """How recordings become demonstrations."""
+        return Learning(self.scenario.segmentation.config, self.scenario.demonstrations.objects)
 
     @cached_property
     def teacher(self) -> Teacher:
@@ -286,5 +279,9 @@ class Setup:
         return Evaluator(self.planner, self.regions, start, self.strategy, seed, progress)
 
     def learn(self, recording: Recording) -> Demonstration:
-        """Turn a recording into a demonstration, by the kinematics of the arm it was made on."""
-        return self.recorder_of(recording.robot).learn(recording, self.segmentation)
+        """Turn a recording into a demonstration, by the kinematics of the arm it was made on.
+
+        Raises:
+            NoMotionKept: next to nothing of what was shown near an object would be kept.
+        """
+        return self.recorder_of(recording.robot).learn(recording, self.learning)

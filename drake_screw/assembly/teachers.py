@@ -24,9 +24,7 @@ def recorded(setup: Setup) -> Teacher:
     assert block.folder is not None
     foreign = None
     if recorder.robot is not None:
-        foreign = ForeignRecordings(
-            recorder, setup.segmentation, setup.planner, setup.workcell.start
-        )
+        foreign = ForeignRecordings(recorder, setup.learning, setup.planner, setup.workcell.start)
     return RecordedTeacher(recorder.library(block.folder, block.format), setup.regions, foreign)
 
 

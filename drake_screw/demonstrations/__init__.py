@@ -1,15 +1,22 @@
 """Recordings of demonstrations, and the guiding poses extracted from them."""
 
 from drake_screw.demonstrations.demonstration import Demonstration, demonstration_from_recording
+from drake_screw.demonstrations.faithful import FaithfulConfig, faithful_guiding_poses
+from drake_screw.demonstrations.fidelity import Fidelity
 from drake_screw.demonstrations.library import read_library, read_recording, write_recording
 from drake_screw.demonstrations.recording import Recording
+from drake_screw.demonstrations.refusal import NoMotionKept
 from drake_screw.demonstrations.segmentation import SegmentationConfig, guiding_poses, segment
 
 __all__ = [
     "Demonstration",
+    "FaithfulConfig",
+    "Fidelity",
+    "NoMotionKept",
     "Recording",
     "SegmentationConfig",
     "demonstration_from_recording",
+    "faithful_guiding_poses",
     "guiding_poses",
     "read_library",
     "read_recording",

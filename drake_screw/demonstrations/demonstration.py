@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from drake_screw.demonstrations.faithful import FaithfulConfig, faithful_guiding_poses
+from drake_screw.demonstrations.fidelity import Fidelity, fidelity
 from drake_screw.demonstrations.recording import Recording
+from drake_screw.demonstrations.refusal import require_motion
+from drake_screw.demonstrations.regions import Regions
 from drake_screw.demonstrations.segmentation import SegmentationConfig, guiding_poses
+from drake_screw.errors import RecordingError, suggestion
 from drake_screw.robot.arm import Arm
 from drake_screw.typing import Array
 
@@ -24,6 +30,8 @@ class Demonstration:
         X_WO: (k, 4, 4) where the objects were.
         path: (m, 4, 4) X_WE, the end effector as recorded.
         kept: (g,) indices of the guiding poses in `path`.
+        fidelity: how faithfully they keep what was shown, for each object of the task.
+        notes: what else should be known, in words: which objects are bystanders.
     """
 
     name: str
@@ -32,6 +40,8 @@ class Demonstration:
     X_WO: Array
     path: Array
     kept: NDArray[np.int64]
+    fidelity: tuple[Fidelity, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def transfer(self, X_WO: ArrayLike) -> Array:
         """Guiding poses for objects elsewhere: X_WE' = X_WO' X_OE.
@@ -46,15 +56,66 @@ class Demonstration:
 
 
 def demonstration_from_recording(
-    recording: Recording, arm: Arm, config: SegmentationConfig | None = None
+    recording: Recording,
+    arm: Arm,
+    config: SegmentationConfig | FaithfulConfig | None = None,
+    *,
+    names: Sequence[str] | None = None,
+    task_objects: Sequence[str] = (),
 ) -> Demonstration:
-    """Forward kinematics and segmentation of a recording (see `segmentation`).
+    """Forward kinematics and segmentation of a recording.
 
-    A region-of-interest factor of the recording's own overrides the configuration's.
+    Args:
+        recording: to learn from. A region-of-interest factor of its own overrides the
+            configuration's, and objects of the task that it names override `task_objects`.
+        arm: that was led.
+        config: how the path is cut: as published (see `segmentation`; the default), or faithfully
+            (see `faithful`).
+        names: of the k objects; "object 1" and so on if None.
+        task_objects: names of the objects that the hand works on; found by distance where empty.
+
+    Raises:
+        NoMotionKept: faithful segmentation keeps no motion of it, and says why.
+        RecordingError: an object of the task has a name that no object has.
     """
     config = config or SegmentationConfig()
     if recording.region_of_interest is not None:
         config = replace(config, region_of_interest=recording.region_of_interest)
-    path = arm.pose(recording.q)
-    X_OE, objects, kept = guiding_poses(path, recording.X_WO, config)
-    return Demonstration(recording.name, X_OE, objects, recording.X_WO, path, kept)
+    count = len(recording.X_WO)
+    names = [f"object {i + 1}" for i in range(count)] if names is None else list(names)
+    named = _indices(recording, names, recording.task_objects or task_objects)
+    X_WE, X_WO, t = arm.pose(recording.q), recording.X_WO, recording.t
+    measure = config if isinstance(config, FaithfulConfig) else FaithfulConfig()
+    regions = measure.regions(X_WE, X_WO, named)
+    notes: tuple[str, ...] = ()
+    if isinstance(config, FaithfulConfig):
+        found = faithful_guiding_poses(X_WE, X_WO, config, t=t, named=named)
+        _, owners, kept = found
+        file = recording.source
+        require_motion(X_WE, t, X_WO, owners, kept, regions, names, config, file=file)
+        notes = _bystanders(regions, names)
+    else:
+        found = guiding_poses(X_WE, X_WO, config)
+    X_OE, owners, kept = found
+    kept_well = fidelity(X_WE, t, X_WO, X_OE, owners, names, measure, regions=regions)
+    return Demonstration(recording.name, X_OE, owners, X_WO, X_WE, kept, kept_well, notes)
+
+
+def _indices(recording: Recording, names: Sequence[str], wanted: Sequence[str]) -> list[int] | None:
+    if not wanted:
+        return None
+    for name in wanted:
+        if name not in names:
+            raise RecordingError(
+                f"no object '{name}' to work on",
+                remedy=suggestion(name, names, "Objects"),
+                file=recording.source,
+            )
+    return [names.index(name) for name in wanted]
+
+
+def _bystanders(regions: Regions, names: Sequence[str]) -> tuple[str, ...]:
+    return tuple(
+        f"the {names[i]}, {regions.smallest[i]:.2f} m from the hand at the nearest, is a bystander"
+        for i in np.flatnonzero(~regions.task).tolist()
+    )

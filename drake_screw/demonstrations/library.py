@@ -14,6 +14,7 @@ from drake_screw.screws import normalized
 from drake_screw.typing import Array, PathLike
 
 JOINTS, OBJECTS, REGION = "joint_angles.csv", "object_poses.csv", "region_of_interest.txt"
+TASK = "task_objects.txt"
 
 
 def read_recording(
@@ -28,7 +29,8 @@ def read_recording(
 
     Args:
         folder: holds joint_angles.csv, object_poses.csv (a 4x4 matrix X_WO per object, stacked)
-            and perhaps region_of_interest.txt (a factor).
+            and perhaps region_of_interest.txt (a factor) and task_objects.txt (a line for the name
+            of each object that the hand works on).
         joint_names: the arm's n joints.
         lower, upper: (n,) limits, rad or m.
         objects: how many object poses there must be; any number if None.
@@ -50,7 +52,14 @@ def read_recording(
             file=folder / OBJECTS,
         )
     recording = Recording(
-        folder.name, tuple(joint_names), t, q, X_WO, _factor(folder / REGION), (), folder.resolve()
+        folder.name,
+        tuple(joint_names),
+        t,
+        q,
+        X_WO,
+        _factor(folder / REGION),
+        source=folder.resolve(),
+        task_objects=_task_objects(folder / TASK),
     )
     return checked(recording, lower, upper, file=folder / JOINTS, lines=lines)
 
@@ -113,6 +122,8 @@ def write_recording(
     np.savetxt(folder / OBJECTS, recording.X_WO.reshape(-1, 4), fmt="%.17g", delimiter=",")
     if recording.region_of_interest is not None:
         (folder / REGION).write_text(f"{recording.region_of_interest:g}\n")
+    if recording.task_objects:
+        (folder / TASK).write_text("".join(f"{name}\n" for name in recording.task_objects))
 
 
 def read_object_poses(file: PathLike) -> Array:
@@ -164,3 +175,13 @@ def _factor(file: Path) -> float | None:
     if not factor >= 1.0:
         raise RecordingError(f"the factor {factor:g} is below 1", file=file)
     return factor
+
+
+def _task_objects(file: Path) -> tuple[str, ...]:
+    if not file.is_file():
+        return ()
+    try:
+        names = [line.strip() for line in file.read_text(encoding="utf-8-sig").splitlines()]
+    except (OSError, UnicodeDecodeError) as error:
+        raise RecordingError(f"cannot be read: {error}", file=file) from error
+    return tuple(name for name in names if name)

@@ -31,6 +31,7 @@ class Recording:
             has its own.
         notes: what the importer changed, human-readable.
         source: folder it was read from.
+        task_objects: names of the objects that the hand works on, if the recording says so.
         robot: model of the robot it was made on; None for the arm that is planned for.
     """
 
@@ -42,6 +43,7 @@ class Recording:
     region_of_interest: float | None = None
     notes: tuple[str, ...] = ()
     source: Path | None = None
+    task_objects: tuple[str, ...] = ()
     robot: str | None = None
 
     @property

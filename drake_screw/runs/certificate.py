@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from drake_screw.acquisition import Finished, Status
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits.spending import attempt_delta
@@ -35,6 +37,9 @@ class Certificate:
         delta_spent_over_attempts: whether the rounds share delta.
         attempt: number of the last round's attempt to certify, from 1.
         delta_of_attempt: its share of delta.
+        kept_position: m, and
+        kept_rotation: rad, largest deviation of what was shown near the objects from what the
+            demonstrations keep of it; None where it is not known.
         reason: why the run ended.
     """
 
@@ -56,6 +61,8 @@ class Certificate:
     delta_spent_over_attempts: bool | None = None
     attempt: int | None = None
     delta_of_attempt: float | None = None
+    kept_position: float | None = None
+    kept_rotation: float | None = None
     reason: str = ""
 
     def __post_init__(self) -> None:
@@ -85,7 +92,7 @@ class Certificate:
                 f"time ({held}).",
                 f"Of the weakest region: {self.claim}.",
             ]
-        return (*shown, self._scope(), self._evidence())
+        return (*shown, self._scope(), *self._fidelity(), self._evidence())
 
     def _scope(self) -> str:
         touching = " that touches nothing"
@@ -95,6 +102,14 @@ class Certificate:
             f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
             "in each region. To succeed is to have a plan within the joint limits of the robot's "
             f"model{collisions}."
+        )
+
+    def _fidelity(self) -> tuple[str, ...]:
+        if self.kept_position is None or self.kept_rotation is None:
+            return ()
+        return (
+            "Of what was shown near the objects, the part that the demonstrations keep is kept to "
+            f"{1e3 * self.kept_position:.0f} mm and {self.kept_rotation:.2f} rad.",
         )
 
     def _evidence(self) -> str:
@@ -152,9 +167,16 @@ def certificate(
         collisions_checked=setup.scenario.planner.collision,
         strategy=bandit.name,
         guarantee=bandit.guarantee,
+        kept_position=_largest(finished, "position"),
+        kept_rotation=_largest(finished, "rotation"),
         reason=finished.reason,
         **shown,
     )
+
+
+def _largest(finished: Finished, measure: str) -> float | None:
+    found = [getattr(f, measure) for d in finished.demonstrations for f in d.fidelity]
+    return max(found) if found and np.isfinite(found).all() else None
 
 
 def _sentence(text: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from importlib.metadata import version
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from drake_screw.acquisition import RoundFinished
-from drake_screw.demonstrations import Recording, write_recording
+from drake_screw.demonstrations import Fidelity, Recording, write_recording
 from drake_screw.demonstrations.library import JOINTS
 from drake_screw.errors import RunDirectoryError
 from drake_screw.files import fresh_folder, write_folder, write_text
@@ -108,9 +108,14 @@ class RunDirectory:
             log.writelines(f"{stamp} {line}\n" for line in text.splitlines())
 
     def add_demonstration(
-        self, number: int, recording: Recording, remark: str, held: Mapping[str, float]
+        self,
+        number: int,
+        recording: Recording,
+        remark: str,
+        held: Mapping[str, float],
+        fidelity: Sequence[Fidelity] = (),
     ) -> Path:
-        """Store a demonstration's recording; returns its folder."""
+        """Store a demonstration's recording, and how faithfully it is kept; returns its folder."""
         folder = self.path / DEMONSTRATIONS / f"{number + 1:02d}_{recording.name}"
 
         def fill(temporary: Path) -> None:
@@ -120,7 +125,9 @@ class RunDirectory:
                 write_recording(recording, temporary, held)
 
         write_folder(folder, fill)
-        entry = DemonstrationRecord.of(recording, str(folder.relative_to(self.path)), remark)
+        entry = DemonstrationRecord.of(
+            recording, str(folder.relative_to(self.path)), remark, fidelity
+        )
         self.save(demonstrations=(*self.record.demonstrations, entry))
         return folder
 

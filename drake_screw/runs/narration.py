@@ -34,7 +34,9 @@ def describe(event: Event, regions: Regions) -> str:
         case DemonstrationRequested():
             return f"demonstration {event.number + 1} wanted at {place(event.suggestion, regions)}"
         case DemonstrationAdded():
-            notes = "".join(f"; {note}" for note in event.recording.notes)
+            demonstration = event.demonstration
+            known = (*event.recording.notes, *demonstration.notes, *demonstration.fidelity)
+            notes = "".join(f"; {note}" for note in known)
             return (
                 f"demonstration {event.number + 1} is {event.recording.name} "
                 f"({event.recording.duration:.1f} s, {len(event.demonstration.X_OE)} guiding "

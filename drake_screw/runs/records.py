@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Literal
 
@@ -9,9 +11,11 @@ import numpy as np
 
 from drake_screw.acquisition import RoundFinished, Status, Suggestion
 from drake_screw.bandits import Verdict
-from drake_screw.demonstrations import Recording
+from drake_screw.demonstrations import Fidelity, Recording
 from drake_screw.runs.certificate import Certificate
 from drake_screw.tasks import Regions
+
+_MEASURES = ("position", "rotation", "time", "turn_shown", "turn_kept")
 
 
 @dataclass(frozen=True)
@@ -124,6 +128,34 @@ class RoundRecord:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FidelityRecord:
+    """What run.json holds of a demonstration's fidelity to what was shown near one object.
+
+    See `drake_screw.demonstrations.Fidelity`; deviations are None where no sample is kept.
+    """
+
+    object: str
+    guiding_poses: int
+    position: float | None
+    rotation: float | None
+    time: float
+    turn_shown: float
+    turn_kept: float
+
+    @classmethod
+    def of(cls, fidelity: Fidelity) -> FidelityRecord:
+        """The record of a demonstration's fidelity."""
+        values = {name: getattr(fidelity, name) for name in _MEASURES}
+        finite: dict[str, Any] = {k: v if math.isfinite(v) else None for k, v in values.items()}
+        return cls(object=fidelity.object, guiding_poses=fidelity.guiding_poses, **finite)
+
+    def __str__(self) -> str:
+        measures = {name: getattr(self, name) for name in _MEASURES}
+        known = {k: math.inf if v is None else v for k, v in measures.items()}
+        return str(Fidelity(object=self.object, guiding_poses=self.guiding_poses, **known))
+
+
+@dataclass(frozen=True, kw_only=True)
 class DemonstrationRecord:
     """What run.json holds of a demonstration; its recording is in `folder`."""
 
@@ -133,9 +165,12 @@ class DemonstrationRecord:
     robot: str | None = None
     remark: str
     notes: tuple[str, ...]
+    fidelity: tuple[FidelityRecord, ...] = ()
 
     @classmethod
-    def of(cls, recording: Recording, folder: str, remark: str) -> DemonstrationRecord:
+    def of(
+        cls, recording: Recording, folder: str, remark: str, fidelity: Sequence[Fidelity] = ()
+    ) -> DemonstrationRecord:
         """The record of a recording that is stored in a folder of the run."""
         return cls(
             name=recording.name,
@@ -144,6 +179,7 @@ class DemonstrationRecord:
             robot=recording.robot,
             remark=remark,
             notes=recording.notes,
+            fidelity=tuple(FidelityRecord.of(each) for each in fidelity),
         )
 
 

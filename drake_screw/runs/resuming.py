@@ -13,6 +13,7 @@ from drake_screw.acquisition import (
     Lesson,
     Suggestion,
     TreeEvaluator,
+    UsableLessons,
     acquire,
 )
 from drake_screw.acquisition.grid_evaluator import Progress
@@ -67,8 +68,10 @@ def _kept(reader: RunReader, number: int, recording: Recording, remark: str) -> 
     What is learned from is always what the files say, so that a resumed run cannot differ.
     """
     if number >= len(reader.directory.record.demonstrations):
-        held = reader.setup.scenario.robot.parked
-        reader.directory.add_demonstration(number, recording, remark, held)
+        setup = reader.setup
+        fidelity = setup.learn(recording).fidelity
+        held = setup.scenario.robot.parked
+        reader.directory.add_demonstration(number, recording, remark, held, fidelity)
     return reader.recording(number)
 
 
@@ -90,7 +93,8 @@ class _KeptTeacher:
         known = reader.directory.record.demonstrations
         if number < len(known):
             return Lesson(reader.recording(number), known[number].remark)
-        lesson = reader.setup.teacher.demonstrate(suggestion, number=number, used=used, rng=rng)
+        teacher = UsableLessons(reader.setup.teacher, reader.setup.learn)
+        lesson = teacher.demonstrate(suggestion, number=number, used=used, rng=rng)
         if lesson.recording is None:
             return lesson
         return Lesson(_kept(reader, number, lesson.recording, lesson.remark), lesson.remark)

@@ -12,13 +12,11 @@ from pydantic_core import InitErrorDetails
 from drake_screw.plugins import BUILT_IN, is_plugged_in
 from drake_screw.scenario.block import Block, Problem
 from drake_screw.scenario.values import (
-    METRES,
     RADIANS,
     Folder,
     Option,
     Options,
     PartOf,
-    Positive,
     Probability,
 )
 
@@ -81,6 +79,8 @@ class DemonstrationsBlock(Block):
     recording folders, relative to the scenario file"""
     budget: Annotated[int, Field(ge=1)] = 12
     """most demonstrations in total, the initial ones included"""
+    objects: tuple[str, ...] = ()
+    """names of the objects that the hand works on; where left out, those that it comes near"""
 
     @property
     def initial_count(self) -> int:
@@ -151,19 +151,6 @@ class TeacherBlock(Block):
         if errors:
             raise ValidationError.from_exception_data(cls.__name__, errors)
         return data
-
-
-class SegmentationBlock(Block):
-    spacing: Annotated[Positive, METRES] = 0.005
-    """smallest distance between poses kept of a recording"""
-    position_tolerance: Annotated[Positive, METRES] = 0.015
-    """largest distance of the recorded hand from a constant screw"""
-    rotation_tolerance: Positive = 0.15
-    """largest chordal quaternion distance of the recorded hand from a constant screw"""
-    min_progress: Positive = 0.001
-    """smallest advance of the screw parameter between successive poses"""
-    region_of_interest: Annotated[float, Field(ge=1)] = 1.5
-    """guiding poses lie within this many times the smallest distance of hand and object"""
 
 
 class PlannerBlock(Block):

@@ -16,9 +16,9 @@ from drake_screw.scenario.run_blocks import (
     DemonstrationsBlock,
     PlannerBlock,
     RegionsBlock,
-    SegmentationBlock,
     TeacherBlock,
 )
+from drake_screw.scenario.segmentation_block import SegmentationBlock
 from drake_screw.scenario.values import Name
 from drake_screw.scenario.workcell_blocks import (
     ObjectBlock,
@@ -104,6 +104,14 @@ class Scenario(Block):
                 f"there is another object named '{name}'",
                 "Give every object a name of its own.",
             )
+        names = [o.name for o in self.objects]
+        for index, name in enumerate(self.demonstrations.objects):
+            if name not in names:
+                yield Problem(
+                    ("demonstrations", "objects", index),
+                    f"there is no object '{name}'",
+                    suggestion(name, names, "Objects"),
+                )
         yield from self._adaptive()
         yield from self._grid()
         K = math.prod(count for counts in self.cells for count in counts)

@@ -15,6 +15,7 @@ from drake_screw.acquisition import (
     RecordedTeacher,
     RoundFinished,
     Teacher,
+    UsableLessons,
     acquire,
 )
 from drake_screw.assembly.setup import Setup
@@ -132,7 +133,7 @@ class Experiment:
         evaluator = Evaluator(setup.planner, regions, setup.workcell.start, setup.strategy, seed)
         return acquire(
             evaluator.evaluate,
-            self._teacher(regions),
+            UsableLessons(self._teacher(regions), self._learn),
             self._learn,
             regions,
             initial=setup.initial,

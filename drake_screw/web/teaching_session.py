@@ -12,7 +12,7 @@ import numpy as np
 from drake_screw.acquisition import Suggestion
 from drake_screw.acquisition.guided_arm import GuidedArm
 from drake_screw.assembly.setup import Setup
-from drake_screw.demonstrations import Recording, read_recording
+from drake_screw.demonstrations import FaithfulConfig, Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
 from drake_screw.runs.narration import place
@@ -132,15 +132,13 @@ class TeachingSession:
         low, high = self._slider_range
         stuck = "the arm cannot follow: a joint is at its limit, or it is stretched out"
         asked = place(self._suggestion, self._suggestion.regions or self._setup.regions)
-        spacing = 1e3 * self._setup.segmentation.spacing
         seconds = len(self._samples or ()) * PERIOD
         return {
             "title": f"{self._setup.scenario.name}: teach",
             "headline": f"demonstration {self._number + 1} is wanted at {asked}",
             "message": self._message or (stuck if self.guided.stuck else ""),
             "clock": f"recording, {seconds:.1f} s" if self.recording else "",
-            "hint": f"Move the hand by more than {spacing:.0f} mm while it turns: a turn on the "
-            "spot leaves no trace in a recording.",
+            "hint": _hint(self._setup),
             "can": self._actions(),
             "leading": self.leading,
             "hand": [
@@ -242,3 +240,14 @@ def _segment_lines(tried: Attempt) -> list[dict[str, Any]]:
         {"color": STATUS_COLORS[status], "words": describe_segment(tried, i)}
         for i, status in enumerate(tried.status)
     ]
+
+
+def _hint(setup: Setup) -> str:
+    """What to mind while leading the arm, if anything."""
+    config = setup.learning.segmentation
+    if isinstance(config, FaithfulConfig):
+        return ""
+    return (
+        f"Move the hand by more than {1e3 * config.spacing:.0f} mm while it turns: a turn on the "
+        "spot leaves no trace in a recording."
+    )
