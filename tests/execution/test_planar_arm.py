@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.execution import FORMATS
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.timing import time_plan
 from drake_screw.planning import BatchPlanner, Plan
 from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.plugins import find
 from drake_screw.robot import ObjectConfig, RobotConfig, Workcell, build_workcell
 from drake_screw.screws import inverse, pose
 from tests.robot.small_arms import PLANAR, sdf
@@ -58,4 +58,4 @@ def test_it_is_executed(config: StationConfig, lesson: Demonstration, plan: Plan
 def test_it_is_exported(workcell: Workcell, lesson: Demonstration, plan: Plan, format: str) -> None:
     arm = workcell.arm
     poses = np.concatenate([arm.pose(plan.q[:1]), lesson.transfer(X_WO)])
-    assert len(FORMATS[format](time_plan(plan, poses, arm), arm)) > 1000
+    assert len(find("exporters", format)(time_plan(plan, poses, arm), arm)) > 1000
