@@ -10,7 +10,7 @@ from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.timing import time_plan
 from drake_screw.planning import BatchPlanner, Plan
 from drake_screw.planning.collisions import CollisionFreePlanner
-from drake_screw.plugins import find
+from drake_screw.plugins import find, names
 from drake_screw.robot import ObjectConfig, RobotConfig, Workcell, build_workcell
 from drake_screw.screws import inverse, pose
 from tests.robot.small_arms import PLANAR, sdf
@@ -54,7 +54,7 @@ def test_it_is_executed(config: StationConfig, lesson: Demonstration, plan: Plan
     assert done.report.tracking.position < 5e-3
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize("format", names("exporters"))
 def test_it_is_exported(workcell: Workcell, lesson: Demonstration, plan: Plan, format: str) -> None:
     arm = workcell.arm
     poses = np.concatenate([arm.pose(plan.q[:1]), lesson.transfer(X_WO)])
