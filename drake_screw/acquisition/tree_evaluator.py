@@ -42,9 +42,7 @@ class TreeEvaluator:
     ) -> None:
         free = int(free_axes(area).sum())
         if tree.dimension != free:
-            raise ValueError(
-                f"the tree has {tree.dimension} axes, the work area has {free} free ones"
-            )
+            raise ValueError(f"the tree has {tree.dimension} axes, the work area {free} free ones")
         self._planner = planner
         self._area = area
         self._q_start = q_start

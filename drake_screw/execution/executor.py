@@ -27,6 +27,9 @@ from drake_screw.robot import Arm
 from drake_screw.screws import shift
 from drake_screw.typing import Array
 
+SINGULAR = 1e-6
+"""Of the largest singular value of J: directions with a smaller one are none to move in."""
+
 
 @dataclass(frozen=True)
 class Control:
@@ -177,7 +180,8 @@ class ScrewPlanExecutor(LeafSystem):
         V_WS = ahead.rate * plan.segments[ahead.segment].twist
         V_WE = shift(V_WS, X_WE[:3, 3]) + self.control.pose_gain * _difference(X_WE, X_WS)
         self._parameters.set_nominal_joint_position(ahead.q)
-        solution = DoDifferentialInverseKinematics(q, memory.v, V_WE, J_WE, self._parameters)
+        V, J = _possible(V_WE, J_WE)
+        solution = DoDifferentialInverseKinematics(q, memory.v, V, J, self._parameters)
         if solution.status == DifferentialInverseKinematicsStatus.kSolutionFound:
             memory = replace(memory, v=self._within_limits(q, solution.joint_velocities))
         return memory
@@ -197,6 +201,22 @@ def _parameters(arm: Arm, control: Control) -> DifferentialInverseKinematicsPara
     parameters.set_joint_velocity_limits((-arm.velocity_limits, arm.velocity_limits))
     parameters.set_joint_centering_gain(control.centering_gain * np.eye(arm.n))
     return parameters
+
+
+def _possible(V_WE: Array, J_WE: Array) -> tuple[Array, Array]:
+    """The part of a twist (6,) that an arm of fewer than six joints can give.
+
+    Drake's solver wants the twist exactly, and stands still at a rounding error in a direction in
+    which the arm cannot move.
+
+    Returns:
+        V (m,) and J (m, n) in m directions in which it can.
+    """
+    if J_WE.shape[1] >= 6:
+        return V_WE, J_WE
+    U, size, _ = np.linalg.svd(J_WE, full_matrices=False)
+    directions = U[:, size > SINGULAR * size[0]].T
+    return directions @ V_WE, directions @ J_WE
 
 
 def _difference(X_WE: Array, X_WS: Array) -> Array:

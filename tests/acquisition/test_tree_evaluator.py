@@ -141,7 +141,7 @@ def test_without_demonstrations_the_whole_area_is_asked_for() -> None:
 
 def test_a_tree_of_other_axes_is_refused() -> None:
     tree = CertifyOrSplit(GOAL, 3, 1 / 4, 0.5)
-    with pytest.raises(ValueError, match="3 axes, the work area has 2"):
+    with pytest.raises(ValueError, match="3 axes, the work area 2"):
         TreeEvaluator(Nearby(1.0), ONE, np.zeros(1), tree, 0)
 
 

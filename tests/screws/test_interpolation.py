@@ -41,6 +41,15 @@ def test_sclerp_ends_on_the_poses(A: np.ndarray, B: np.ndarray) -> None:
     np.testing.assert_allclose(sclerp(A, B, 1.0), B, atol=1e-14)
 
 
+def test_each_translation_of_a_batch_keeps_its_own_length() -> None:
+    V = np.array([[0.0, 0.0, 0.0, 0.3, 0.0, 0.4], [0.0, 0.0, 0.0, 0.0, 2.0, 0.0]])
+    screw = screw_from_twist(V)
+    np.testing.assert_allclose(screw.axis, [[0.6, 0.0, 0.8], [0.0, 1.0, 0.0]], atol=1e-15)
+    np.testing.assert_allclose(screw.translation, [0.5, 2.0], atol=1e-15)
+    np.testing.assert_array_equal(screw.angle, 0.0)
+    np.testing.assert_allclose(screw.twist, V, atol=1e-15)
+
+
 @many
 @given(poses(), twists(), parts, parts)
 def test_twist_is_constant_along_sclerp(A: np.ndarray, V: np.ndarray, s1: float, s2: float) -> None:
