@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,8 +16,10 @@ from drake_screw.demonstrations.refusal import require_motion
 from drake_screw.demonstrations.regions import Regions
 from drake_screw.demonstrations.segmentation import SegmentationConfig, guiding_poses
 from drake_screw.errors import RecordingError, suggestion
-from drake_screw.robot.arm import Arm
 from drake_screw.typing import Array
+
+if TYPE_CHECKING:
+    from drake_screw.robot.arm import Arm
 
 
 @dataclass(frozen=True)

@@ -71,6 +71,7 @@ class SegmentationBlock(Block):
     @model_validator(mode="before")
     @classmethod
     def _defaults_of_the_method(cls, data: Any) -> Any:
+        data = {} if data is None else data
         if not isinstance(data, dict):
             return data
         defaults = DEFAULTS.get(str(data.get("method", PUBLISHED)), {})

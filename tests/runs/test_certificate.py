@@ -10,6 +10,7 @@ import pytest
 
 from drake_screw.acquisition import Finished, Status
 from drake_screw.bandits import Goal, coverage_bound, make_strategy
+from drake_screw.demonstrations import Fidelity
 from drake_screw.runs.certificate import certificate
 from drake_screw.runs.codec import plain
 
@@ -33,7 +34,12 @@ def stated_by(name, mu, rounds=(), collision=False, **options):
         regions=SimpleNamespace(K=3),
     )
     status = Status.CERTIFIED if verdict.certified else Status.INSUFFICIENT
-    finished = Finished(status, "the budget is used up", verdict, ("a", "b"))
+    kept = [
+        Fidelity("bowl", 7, 0.006, 0.08, 0.9, 1.38, 1.36),
+        Fidelity("bowl", 5, 0.009, 0.05, 0.8, 1.0, 1.0),
+    ]
+    demonstrations = tuple(SimpleNamespace(fidelity=(each,)) for each in kept)
+    finished = Finished(status, "the budget is used up", verdict, demonstrations)
     stated = certificate(setup, finished, attempt=attempt, instances=instances)
     assert json.loads(json.dumps(plain(stated))) == plain(stated)
     return stated, verdict, " ".join(stated.statement)
@@ -48,6 +54,8 @@ def test_a_certificate_of_a_run_that_spent_delta() -> None:
     assert stated.instances_in_all_rounds == verdict.total_samples + 48 + 300
     assert stated.confidence_holds_for == "the whole run"
     assert "Every region succeeds at least 0.95 of the time (confidence 0.95" in text
+    assert "is kept to 9 mm and 0.08 rad." in text
+    assert (stated.kept_position, stated.kept_rotation) == (0.009, 0.08)
     assert "3 regions, with 2 demonstrations" in text
     assert "attempt 2" in text
     assert "budget" not in text

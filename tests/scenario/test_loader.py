@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from drake_screw.demonstrations import FaithfulConfig, SegmentationConfig
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
 from drake_screw.scenario.loader import dump_scenario, load_scenario
@@ -21,10 +22,10 @@ from drake_screw.scenario.run_blocks import (
     DemonstrationsBlock,
     PlannerBlock,
     RegionsBlock,
-    SegmentationBlock,
     TeacherBlock,
 )
 from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.segmentation_block import SegmentationBlock
 from drake_screw.scenario.values import Interval
 from drake_screw.scenario.workcell_blocks import (
     ObjectBlock,
@@ -665,3 +666,29 @@ def test_what_is_written_is_read_back(
     file = tmp_path_factory.getbasetemp() / "round_trip.yaml"
     file.write_text(dump_scenario(scenario), encoding="utf-8", newline="")
     assert load_scenario(file) == scenario
+
+
+def test_each_method_of_segmentation_has_its_own_keys_and_defaults() -> None:
+    published = load_scenario("pouring").segmentation
+    assert (published.method, published.config) == ("published", SegmentationConfig())
+    faithful = load_scenario(
+        "pouring", ["segmentation={method: faithful, reach: 0.5}"]
+    ).segmentation
+    assert faithful.config == FaithfulConfig(reach=0.5)
+    assert faithful.min_progress is None
+    with pytest.raises(ScenarioError, match=r"min_progress: the method faithful has no"):
+        load_scenario("pouring", ["segmentation={method: faithful, min_progress: 0.1}"])
+    with pytest.raises(ScenarioError, match=r"segmentation\.reach: the method published has no"):
+        load_scenario("pouring", ["segmentation.reach=0.1"])
+    with pytest.raises(ScenarioError, match="segmentation: spacing must be"):
+        load_scenario("pouring", ["segmentation={method: faithful, spacing: 0.1}"])
+    with pytest.raises(ScenarioError, match="there is no 'fathful'") as error:
+        load_scenario("pouring", ["segmentation.method=fathful"])
+    assert "Did you mean 'faithful'?" in str(error.value)
+
+
+def test_objects_of_the_task_are_objects_of_the_scenario() -> None:
+    named = load_scenario("pouring", ["demonstrations.objects=[bowl]"])
+    assert named.demonstrations.objects == ("bowl",)
+    with pytest.raises(ScenarioError, match=r"objects\.0: there is no object 'bowel'"):
+        load_scenario("pouring", ["demonstrations.objects=[bowel]"])

@@ -45,8 +45,11 @@ def test_every_key_has_a_line_in_the_section_of_its_block(heading: str, name: st
 
 
 def test_units_defaults_and_limits_are_told() -> None:
+    row = next(line for line in section("table").splitlines() if "`thickness`" in line)
+    assert row.startswith("| `thickness` | a number | m | `0.04` | above 0 |")
     row = next(line for line in section("segmentation").splitlines() if "`spacing`" in line)
-    assert row.startswith("| `spacing` | a number | m | `0.005` | above 0 |")
+    assert row.startswith("| `spacing` | a number | m | none | above 0 |")
+    assert "0.004 where faithful, 0.005 where published" in row
     row = next(line for line in section("robot").splitlines() if "`joints`" in line)
     assert row.startswith("| `joints` | a list of texts |  | *required* |")
     row = next(line for line in section("coverage").splitlines() if "`strategy`" in line)

@@ -152,6 +152,11 @@ class SimulatedTeacher:
     def _recording(self, q: Array, X_WO: Array, number: int) -> Recording:
         arm = self.workcell.arm
         recording = Recording(
-            f"demo_{number + 1:02d}", arm.joint_names, np.arange(len(q)) / RATE, q, X_WO
+            f"demo_{number + 1:02d}",
+            arm.joint_names,
+            np.arange(len(q)) / RATE,
+            q,
+            X_WO,
+            task_objects=(self.area.objects[0].name,) if len(self.area.objects) > 1 else (),
         )
         return replace(checked(recording, arm.lower, arm.upper), notes=())
