@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drake_screw.acquisition import RecordedTeacher, random_suggestion
+from drake_screw.acquisition import RecordedTeacher, UsableLessons, random_suggestion
+from drake_screw.assembly.kept import kept, named_recordings
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import CertifyOrSplit
 from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
@@ -120,6 +121,7 @@ class Preview:
         teacher: "simulated", "recorded" or "interactive".
         motion: that a simulated teacher shows.
         recordings: how many a recorded teacher has.
+        kept: a line for each recording that the scenario names: how faithfully it is kept.
         recorded_on: the arm that recordings are of, where that is another.
         recordings_named: whether the scenario names recordings.
         budget: most demonstrations in total.
@@ -143,6 +145,7 @@ class Preview:
     teacher: str
     motion: str | None
     recordings: int | None
+    kept: tuple[str, ...]
     recorded_on: PreviewedArm | None
     recordings_named: bool
     budget: int
@@ -165,6 +168,7 @@ class Preview:
         )
         yield "strategy", f"{self.strategy}: {self.guarantee}"
         yield "teacher", f"{self.teacher}: {self._teacher()}"
+        yield from (("", f"  {line}") for line in self.kept)
         if self.recorded_on is not None:
             none = "none yet; recordings named in the scenario would be "
             yield "recorded", f"{'' if self.recordings_named else none}on {self.recorded_on}"
@@ -224,6 +228,7 @@ def preview(scenario: Scenario) -> Preview:
         teacher=block.kind,
         motion=str(block.motion) if block.kind == "simulated" else None,
         recordings=len(teacher.recordings) if isinstance(teacher, RecordedTeacher) else None,
+        kept=kept(setup, named_recordings(setup)),
         recorded_on=other,
         recordings_named=recorded or not isinstance(scenario.demonstrations.initial, int),
         budget=scenario.demonstrations.budget,
@@ -276,7 +281,8 @@ def _plans_per_second(setup: Setup) -> float | None:
         return None
     rng = np.random.default_rng(setup.scenario.seed)
     place = random_suggestion(setup.regions, rng)
-    lesson = setup.teacher.demonstrate(place, number=0, used=(), rng=rng)
+    teacher = UsableLessons(setup.teacher, setup.learn)
+    lesson = teacher.demonstrate(place, number=0, used=(), rng=rng)
     if lesson.recording is None:
         return None
     demonstration = setup.learn(lesson.recording)

@@ -86,7 +86,12 @@ def _record(reader: RunReader) -> dict[str, Any]:
         },
         "facts": facts,
         "demonstrations": [
-            {"name": entry.name, "remark": entry.remark, "notes": "; ".join(entry.notes)}
+            {
+                "name": entry.name,
+                "remark": entry.remark,
+                "kept": [str(each) for each in entry.fidelity],
+                "notes": "; ".join(entry.notes),
+            }
             for entry in record.demonstrations
         ],
     }

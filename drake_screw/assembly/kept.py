@@ -1,0 +1,36 @@
+"""What would be kept of the recordings that a scenario names, recording by recording."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from drake_screw.acquisition import RecordedTeacher
+from drake_screw.assembly.setup import Setup
+from drake_screw.demonstrations import NoMotionKept, Recording
+
+
+def named_recordings(setup: Setup) -> tuple[Recording, ...]:
+    """The recordings of a recorded teacher, and those to start from."""
+    initial = () if isinstance(setup.initial, int) else setup.initial
+    if setup.scenario.teacher.kind == "interactive":
+        return initial
+    teacher = setup.teacher
+    return (*initial, *(teacher.recordings if isinstance(teacher, RecordedTeacher) else ()))
+
+
+def kept(setup: Setup, recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """A line for each recording: how faithfully it is kept, or why it is not used.
+
+    For example ``demo_07: 7 guiding poses of the bowl; kept to 6 mm and 0.08 rad; turn 1.36 of 1.38
+    rad``.
+    """
+    lines = []
+    for recording in recordings:
+        try:
+            learned = setup.learn(recording)
+        except NoMotionKept as error:
+            lines.append(f"{recording.name}: not used: {error.message}")
+        else:
+            words = "; ".join(map(str, (*learned.fidelity, *learned.notes)))
+            lines.append(f"{recording.name}: {words}")
+    return tuple(lines)
