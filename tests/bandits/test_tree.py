@@ -129,6 +129,24 @@ def test_frontier_is_a_partition_that_keeps_the_samples_where_they_lie() -> None
             assert ((cell.points >= cell.lower) & (cell.points <= cell.upper)).all()
 
 
+@pytest.mark.parametrize("rates", [(0.9, 1.0), (0.65, 1.0), (0.9, 0.8)])
+def test_of_several_flagged_cells_the_one_in_which_most_of_the_box_fails_is_asked_for(
+    rates: tuple[float, float],
+) -> None:
+    def cell(lower: float, upper: float, depth: int, rate: float, cleared: bool) -> Cell:
+        points = np.linspace(lower, upper, 400, endpoint=False)[:, None]
+        failed = np.arange(400) < 400 * rate
+        return Cell(np.array([lower]), np.array([upper]), depth, 1, points, failed, cleared)
+
+    half, quarter = cell(0.0, 0.5, 1, rates[0], False), cell(0.5, 0.75, 2, rates[1], False)
+    rest = cell(0.75, 1.0, 2, 0.0, True)
+    tree = CertifyOrSplit(GOAL, 1, SMALLEST, 0.5)
+    for frontier in ((half, quarter, rest), (quarter, half, rest)):
+        verdict = tree.decide(world(clean, 0), frontier)
+        assert verdict.total_samples == 0
+        assert verdict.cell is half
+
+
 def test_a_demonstration_renews_uncleared_cells_only() -> None:
     corner = smallest_cell(2)
     tree = CertifyOrSplit(GOAL, 2, SMALLEST, 0.5)
