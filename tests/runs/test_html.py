@@ -27,7 +27,7 @@ def test_a_run_shows_its_state_its_certificate_and_its_course(finished_run: Path
     stated = run.certificate._repr_html_()
     assert stated in html
     assert "<b>No certificate</b>" in stated
-    assert stated.count("<br>") == len(run.certificate.statement) == 5
+    assert stated.count("<br>") == len(run.certificate.statement) == 6
 
 
 def test_a_run_without_an_end_shows_neither(finished_run: Path, tmp_path: Path) -> None:
