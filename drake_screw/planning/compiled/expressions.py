@@ -12,18 +12,18 @@ are numpy arrays of dtype object, so that `+`, `@`, `np.cross` and slices work a
 >>> print(b.program("example"))
 example
 t0 = load 0
-t1 = load 2
-t2 = * t0 t1
-t3 = load 1
-t4 = load 3
-t5 = * t3 t4
-t6 = + t2 t5
+t1 = load 1
+t2 = load 2
+t3 = load 3
+t4 = * t0 t2
+t5 = * t1 t3
+t6 = + t4 t5
 t7 = < t6 0.0
 t8 = sqrt t6
 t9 = where t7 0.0 t8
 store 4 t9
-store 5 0.0
 t10 = * 2.0 t0
+store 5 0.0
 store 6 t10
 store 7 0.0
 
@@ -36,13 +36,15 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import count
 from typing import Any, overload
 
 import numpy as np
 
 from drake_screw.typing import Array
+
+_serial = count()
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,15 +53,17 @@ class Node:
 
     Attributes:
         operation: its name, as in `lowering`.
-        arguments: what it works on; of a store also the loads of its row that come before.
+        arguments: what it works on.
         number: a constant's value.
         row: of the block, that is loaded or stored.
+        serial: counts all nodes in the order in which they were made.
     """
 
     operation: str
     arguments: tuple[Node, ...] = ()
     number: float | None = None
     row: int | None = None
+    serial: int = field(default_factory=_serial.__next__)
 
 
 class Expression(Node):
@@ -219,7 +223,7 @@ class Block:
     """A block of lanes (see `rows`) whose rows hold expressions: reads and writes are recorded."""
 
     def __init__(self) -> None:
-        self._loads: dict[int, list[Node]] = {}
+        self._loads: set[Node] = set()
         self._stores: list[Node] = []
 
     @overload
@@ -232,7 +236,7 @@ class Block:
         if isinstance(row, slice):
             return np.array([self[k] for k in range(row.start, row.stop)], dtype=object)
         load = Expression("load", row=row)
-        self._loads.setdefault(row, []).append(load)
+        self._loads.add(load)
         return load
 
     def __setitem__(self, row: int | slice, value: Any) -> None:
@@ -240,26 +244,24 @@ class Block:
             for k, one in zip(range(row.start, row.stop), value, strict=True):
                 self[k] = one
         else:
-            arguments = (_lifted(value), *self._loads.get(row, ()))
-            self._stores.append(Node("store", arguments, row=row))
+            self._stores.append(Node("store", (_lifted(value),), row=row))
 
     def program(self, name: str) -> Program:
-        """All that was stored, one row after the other, and before each what it takes to know it.
+        """All that was stored, and what it takes to know it, in the order it was written down.
+
+        The compiler keeps to that order by and large, so what is loaded long before it is used
+        takes up registers.
 
         Raises:
             ValueError: an expression was made of rows of another block.
         """
-        done: dict[Node, None] = {}
-        for store in self._stores:
-            pending = [store]
-            while pending:
-                node = pending[-1]
-                missing = [argument for argument in node.arguments if argument not in done]
-                if missing:
-                    pending += reversed(missing)
-                else:
-                    done[pending.pop()] = None
-        own = {load for loads in self._loads.values() for load in loads}
-        if any(node.operation == "load" and node not in own for node in done):
+        needed: set[Node] = set()
+        pending = list(self._stores)
+        while pending:
+            node = pending.pop()
+            if node not in needed:
+                needed.add(node)
+                pending += node.arguments
+        if any(node.operation == "load" and node not in self._loads for node in needed):
             raise ValueError(f"program {name!r} uses rows of another block")
-        return Program(name, tuple(done))
+        return Program(name, tuple(sorted(needed, key=operator.attrgetter("serial"))))

@@ -87,12 +87,13 @@ class Settings:
 def blend(n: int, stage: int) -> Program:
     """Joint positions of a stage from the velocities at those before it."""
     b, rows = Block(), r.Rows(n)
-    slopes = [b[rows.slope(s) : rows.slope(s + 1)] for s in range(stage)]
-    if stage > 1:
-        slopes[-1] = b[rows.rate : rows.rate + n]
-        b[rows.slope(stage - 1) : rows.slope(stage)] = slopes[-1]
-    motion = np.array(TABLEAU[stage - 1]) @ np.stack(slopes)
-    b[rows.q_stage : rows.q_stage + n] = b[rows.q : rows.q + n] + b[r.STEP] * motion
+    step, weights = b[r.STEP], np.array(TABLEAU[stage - 1])
+    for j in range(n):
+        slopes = [b[rows.slope(s) + j] for s in range(stage)]
+        if stage > 1:
+            slopes[-1] = b[rows.rate + j]
+            b[rows.slope(stage - 1) + j] = slopes[-1]
+        b[rows.q_stage + j] = b[rows.q + j] + step * (weights @ np.array(slopes))
     return b.program(f"blend_{stage}")
 
 
