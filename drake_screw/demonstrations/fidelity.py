@@ -167,7 +167,8 @@ def turn(X_WE: Array, least: float) -> float:
     variation of the angle, beyond pi as well.
 
     `fidelity` takes twice the tolerance for `least`: from swaying by less, a path within the
-    tolerance need not sway.
+    tolerance need not sway. A sway of up to twice `least` may become one of less than `least` on
+    such a path, and then counts as lost altogether.
 
     Args:
         X_WE: (m, 4, 4).
