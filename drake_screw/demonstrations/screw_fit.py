@@ -94,6 +94,40 @@ def search(
 
 
 @njit(cache=True)
+def poses_on_screws(p: Array, q: Array, count: int) -> tuple[Array, Array]:
+    """Poses evenly, by the screw parameter, on the constant screws from each pose to the next.
+
+    Args:
+        p, q: (g, 3) m and (g, 4), positions and quaternions.
+        count: of poses on a screw, both ends among them; at least 2.
+
+    Returns:
+        (g - 1, count, 3) m and (g - 1, count, 4).
+    """
+    P, Q = np.empty((len(p) - 1, count, 3)), np.empty((len(p) - 1, count, 4))
+    for i in range(len(p) - 1):
+        half, _, axis, along, across, turned = _screw(p, q, i, i + 1)
+        a0, a1, a2, a3 = q[i, 0], q[i, 1], q[i, 2], q[i, 3]
+        # (0, axis) * q_a, towards which the quaternion turns
+        onward = (
+            -(axis[0] * a1 + axis[1] * a2 + axis[2] * a3),
+            axis[0] * a0 + axis[1] * a3 - axis[2] * a2,
+            axis[1] * a0 + axis[2] * a1 - axis[0] * a3,
+            axis[2] * a0 + axis[0] * a2 - axis[1] * a1,
+        )
+        for n in range(count):
+            s = n / (count - 1)
+            sine, cosine = np.sin(half * s), np.cos(half * s)
+            ratio = sine / np.sin(half) if half > 1e-9 else s
+            lag, lead = np.cos(half * (1.0 - s)), -np.sin(half * (1.0 - s))
+            for c in range(3):
+                P[i, n, c] = p[i, c] + s * along[c] + ratio * (lag * across[c] + lead * turned[c])
+            for c in range(4):
+                Q[i, n, c] = cosine * q[i, c] + sine * onward[c]
+    return P, Q
+
+
+@njit(cache=True)
 def _screw(p: Array, q: Array, a: int, b: int) -> tuple[Any, ...]:
     """The constant screw from pose a to pose b.
 
