@@ -9,7 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from drake_screw.demonstrations.fewest_screws import fewest_screws, nearest_screws
+from drake_screw.demonstrations.adjustment import adjusted
+from drake_screw.demonstrations.fewest_screws import fewest_screws
 from drake_screw.demonstrations.regions import Regions, regions_of_interest
 from drake_screw.demonstrations.smoothing import smoothed
 from drake_screw.screws import (
@@ -25,6 +26,9 @@ SCATTER = 0.1
 scatters. Those of people on a Baxter are at 0.04 to 0.05; with 3 mrad of noise, at 0.2 to 0.4."""
 
 _RESERVE = 0.98  # of the tolerances, so that a check by sampled screws finds them kept
+_KEPT = 0.999  # of the tolerances, where sampled screws are what samples are held against
+_NEARBY = 10  # samples from one cut to another
+_COARSER = 2.0  # times the spacing of candidates, where guiding poses are moved afterwards
 
 
 @dataclass(frozen=True)
@@ -112,38 +116,52 @@ def scatters(X_WE: Array, X_smoothed: Array, config: FaithfulConfig) -> bool:
     return bool(np.median(np.maximum(place, turn)) > SCATTER)
 
 
-def _scattered_segments(
+def _scattered_guides(
     X_WE: Array, X_smoothed: Array, config: FaithfulConfig
-) -> NDArray[np.int64]:
-    """As many screws as the smoothed path needs, through its poses, near the samples as recorded.
+) -> tuple[Array, NDArray[np.int64]]:
+    """Guiding poses (g, 4, 4) of samples X_WE that scatter, and the indices (g,) of the cuts.
 
-    So that samples that scatter little would be held as well, the smoothed path is held more
-    closely, by as much as that is.
+    See `faithful_guiding_poses`.
     """
-    position_tolerance = _RESERVE * config.position_tolerance
-    rotation_tolerance = _RESERVE * config.rotation_tolerance
-    closely = 1.0 - SCATTER
-    candidates = _where_to_cut(X_smoothed, config)
+    tolerances = config.position_tolerance, config.rotation_tolerance
+    candidates = _where_to_cut(X_smoothed, config, _COARSER)
     if len(candidates) == 1:
-        return candidates
-    cuts = fewest_screws(
-        X_smoothed, candidates, closely * position_tolerance, closely * rotation_tolerance
-    )
-    nearest = nearest_screws(
-        X_smoothed,
-        candidates,
-        position_tolerance,
-        rotation_tolerance,
-        most=len(cuts) - 1,
-        samples=X_WE,
-    )
-    return nearest if len(nearest) else cuts
+        candidates = _where_to_cut(X_smoothed, config)
+    if len(candidates) == 1:
+        return X_smoothed[candidates], candidates
+    cuts = _smooth_segments(X_smoothed, candidates, config, _RESERVE)
+    fewest = adjusted(X_smoothed[cuts], cuts, X_WE, *tolerances)
+    if fewest.share <= _KEPT:
+        return fewest.X_WE, cuts
+    more = _smooth_segments(X_smoothed, candidates, config, _RESERVE * (1.0 - SCATTER))
+    if len(more) == len(cuts):
+        more = _cut_once_more(cuts, fewest.farthest)
+    nearer = adjusted(X_smoothed[more], more, X_WE, *tolerances)
+    return (nearer.X_WE, more) if nearer.share <= _KEPT else (fewest.X_WE, cuts)
 
 
-def _where_to_cut(X_WE: Array, config: FaithfulConfig) -> NDArray[np.int64]:
+def _smooth_segments(
+    X_WE: Array, candidates: NDArray[np.int64], config: FaithfulConfig, share: float
+) -> NDArray[np.int64]:
+    """As `faithful_segments`, within a share of the tolerances; at other poses if it takes them."""
+    tolerances = share * config.position_tolerance, share * config.rotation_tolerance
+    cuts = fewest_screws(X_WE, candidates, *tolerances)
+    return cuts if len(cuts) else fewest_screws(X_WE, _where_to_cut(X_WE, config), *tolerances)
+
+
+def _cut_once_more(cuts: NDArray[np.int64], index: int) -> NDArray[np.int64]:
+    """Cuts with one at an index more or, if there is one nearby, amid the screw that it is in."""
+    if np.abs(cuts - index).min() < _NEARBY:
+        after = int(np.clip(np.searchsorted(cuts, index, side="right"), 1, len(cuts) - 1))
+        index = (cuts[after - 1] + cuts[after]) // 2
+    return np.union1d(cuts, [index])
+
+
+def _where_to_cut(X_WE: Array, config: FaithfulConfig, times: float = 1.0) -> NDArray[np.int64]:
     """Poses thinned from both ends, so that a path and its reverse may be cut at the same ones."""
-    forward = thin(X_WE, config.spacing, config.turn_spacing)
-    backward = len(X_WE) - 1 - thin(X_WE[::-1], config.spacing, config.turn_spacing)
+    spacing = times * config.spacing, times * config.turn_spacing
+    forward = thin(X_WE, *spacing)
+    backward = len(X_WE) - 1 - thin(X_WE[::-1], *spacing)
     return forward if len(forward) == 1 else np.union1d(forward, backward)
 
 
@@ -163,10 +181,13 @@ def faithful_guiding_poses(
 
     A recording whose samples scatter about a smooth motion, by coarse rounding or noise, would get
     a screw more for every sample that is thrown far off. If times are given, it does not, where
-    half of the samples of a visit are off by `SCATTER` of a tolerance (1 mm by default): if the
-    smoothed motion needs fewer screws, it has as many as that, through poses of the latter, and
-    these keep as near to the samples as so many can, within the tolerances or beyond. `fidelity`
-    tells which.
+    half of the samples of a visit are off by `SCATTER` of a tolerance (1 mm by default): it has as
+    many screws as the smoothed motion needs, and its guiding poses, which begin as poses of the
+    latter, are moved to where these screws keep as near to the samples as recorded as they can (see
+    `adjustment`). Where that is not within the tolerances, it has a screw more, or as many as hold
+    the smoothed motion more closely by `SCATTER`, if these keep the samples within the tolerances.
+    If not even these do, there is no such promise: samples are thrown off by more than the
+    tolerances, and `fidelity` tells how far they are from the screws.
 
     Args:
         X_WE: (m, 4, 4) hand poses over time.
@@ -184,13 +205,13 @@ def faithful_guiding_poses(
     shown, cuts = [np.zeros((0, 4, 4))], [np.zeros(0, dtype=np.int64)]
     for visit in visits:
         X, Z = X_WE[visit.start : visit.stop], X_smoothed[visit.start : visit.stop]
-        found = faithful_segments(X, config)
         if scatters(X, Z, config):
-            fewer = _scattered_segments(X, Z, config)
-            if len(fewer) < len(found):
-                X, found = Z, fewer
+            guides, found = _scattered_guides(X, Z, config)
+        else:
+            found = faithful_segments(X, config)
+            guides = X[found]
         cuts.append(visit.start + found)
-        shown.append(X[found])
+        shown.append(guides)
     owner = np.repeat(
         np.array([v.object for v in visits], dtype=np.int64), [len(c) for c in cuts[1:]]
     )

@@ -18,8 +18,6 @@ def fewest_screws(
     candidates: Array,
     position_tolerance: float,
     rotation_tolerance: float,
-    *,
-    samples: Array | None = None,
 ) -> Array:
     """Where to cut a path so that the fewest constant screws hold all of its poses.
 
@@ -36,17 +34,13 @@ def fewest_screws(
             that one.
         position_tolerance: m.
         rotation_tolerance: rad, at most 1.
-        samples: (m, 4, 4) poses that are held in place of the path's own.
 
     Returns:
         (g,) indices, the first and the last pose among them; none if even the screws from each
         candidate to the next do not hold the poses.
     """
     path = _Path.of(
-        X_WE,
-        X_WE if samples is None else samples,
-        np.asarray(candidates, dtype=np.int64),
-        (position_tolerance, rotation_tolerance),
+        X_WE, np.asarray(candidates, dtype=np.int64), (position_tolerance, rotation_tolerance)
     )
     count = len(path.candidates)
     failed, anywhere = np.zeros((count, count)), np.full(count, -1)
@@ -59,36 +53,8 @@ def fewest_screws(
     from_end = np.where(screws >= 0, screws[-1] - screws, count)[::-1]
     to_end, _ = path.backwards().search(from_end, failed[::-1, ::-1].T.copy(), 1.0)
     rank = np.where(to_end[::-1] >= 0, rank, count)
-    nearer = path.nearest(int(screws[-1]), rank, failed, 1.0)
+    nearer = path.nearest(int(screws[-1]), rank, failed)
     return path.cuts(before) if nearer is None else nearer
-
-
-def nearest_screws(
-    X_WE: Array,
-    candidates: Array,
-    position_tolerance: float,
-    rotation_tolerance: float,
-    *,
-    most: int,
-    samples: Array,
-    widest: float = 3.0,
-) -> Array:
-    """Where to cut a path so that a number of constant screws stay as near to samples as they can.
-
-    Args:
-        X_WE, candidates, position_tolerance, rotation_tolerance, samples: as for `fewest_screws`.
-        most: screws.
-        widest: times the tolerances.
-
-    Returns:
-        (g,) indices, for the least share of the tolerances (to within `widest` / 32) at which at
-        most so many screws hold the samples; none if that takes more than `widest`.
-    """
-    tolerances = position_tolerance, rotation_tolerance
-    path = _Path.of(X_WE, samples, np.asarray(candidates, dtype=np.int64), tolerances)
-    count = len(path.candidates)
-    nearest = path.nearest(most, np.full(count, -1), np.zeros((count, count)), widest)
-    return path.candidates[:0] if nearest is None else nearest
 
 
 @dataclass(frozen=True)
@@ -96,30 +62,24 @@ class _Path:
     """What a search is about.
 
     Attributes:
-        p, q: (m, 3) m and (m, 4), positions and quaternions between which screws lead.
-        P, Q: the same of the samples to be held.
+        p, q: (m, 3) m and (m, 4), positions and quaternions.
         candidates: (c,) where to cut.
         tolerances: m and rad.
     """
 
     p: Array
     q: Array
-    P: Array
-    Q: Array
     candidates: Array
     tolerances: tuple[float, float]
 
     @classmethod
-    def of(
-        cls, X_WE: Array, samples: Array, candidates: Array, tolerances: tuple[float, float]
-    ) -> _Path:
-        p, P = (np.ascontiguousarray(X[:, :3, 3]) for X in (X_WE, samples))
-        q, Q = (quaternion_from_rotation(X[:, :3, :3]) for X in (X_WE, samples))
-        return cls(p, q, P, Q, candidates, tolerances)
+    def of(cls, X_WE: Array, candidates: Array, tolerances: tuple[float, float]) -> _Path:
+        p, q = np.ascontiguousarray(X_WE[:, :3, 3]), quaternion_from_rotation(X_WE[:, :3, :3])
+        return cls(p, q, candidates, tolerances)
 
     def backwards(self) -> _Path:
-        p, q, P, Q = (np.ascontiguousarray(a[::-1]) for a in (self.p, self.q, self.P, self.Q))
-        return _Path(p, q, P, Q, len(p) - 1 - self.candidates[::-1], self.tolerances)
+        p, q = (np.ascontiguousarray(a[::-1]) for a in (self.p, self.q))
+        return _Path(p, q, len(p) - 1 - self.candidates[::-1], self.tolerances)
 
     def cuts(self, before: Array) -> Array:
         """The candidates on the way to the last one, each with the one before it."""
@@ -128,9 +88,9 @@ class _Path:
             way.append(int(before[way[-1]]))
         return self.candidates[way[::-1]]
 
-    def nearest(self, most: int, rank: Array, failed: Array, widest: float) -> Array | None:
-        """Cuts for the least share of the tolerances, below `widest`, where so many screws do."""
-        nearest, low, high = None, 0.0, widest
+    def nearest(self, most: int, rank: Array, failed: Array) -> Array | None:
+        """Cuts for the least share of the tolerances, below 1, where so many screws do."""
+        nearest, low, high = None, 0.0, 1.0
         for _ in range(_REFINEMENTS):
             middle = 0.5 * (low + high)
             screws, before = self.search(rank, failed, middle)
@@ -142,6 +102,4 @@ class _Path:
 
     def search(self, rank: Array, failed: Array, share: float) -> tuple[Array, Array]:
         """As `screw_fit.search`."""
-        return search(
-            self.p, self.q, self.P, self.Q, self.candidates, rank, failed, share, *self.tolerances
-        )
+        return search(self.p, self.q, self.candidates, rank, failed, share, *self.tolerances)

@@ -30,8 +30,6 @@ _LEAST_STEP = 0.01
 def search(
     p: Array,
     q: Array,
-    P: Array,
-    Q: Array,
     candidates: Array,
     rank: Array,
     failed: Array,
@@ -42,8 +40,7 @@ def search(
     """Breadth first: the candidates reached from the first by one screw, by two, and so on.
 
     Args:
-        p, q: (m, 3) m and (m, 4), positions and quaternions between which screws lead.
-        P, Q: the same of the samples to be held, those at both ends of a screw among them.
+        p, q: (m, 3) m and (m, 4), positions and quaternions of the path.
         candidates: (c,) increasing indices of poses between which screws may lead.
         rank: (c,) the only number of screws by which each may be reached; -1 for any.
         failed: (c, c) share of the tolerances at which a screw is known not to hold; updated.
@@ -71,16 +68,12 @@ def search(
                 screw = _screw(p, q, a, b)
                 held = j == i + 1 or 2.0 * screw[0] <= LARGEST_TURN
                 if held and a <= killer[i] <= b:
-                    held = (
-                        _first_missed(
-                            p, q, P, Q, a, screw, every, killer[i], killer[i] + 1, place, turn
-                        )
-                        < 0
-                    )
+                    again = killer[i]
+                    held = _first_missed(p, q, a, screw, every, again, again + 1, place, turn) < 0
                 if held:
-                    missed = _first_missed(p, q, P, Q, a, screw, candidates, i, j + 1, place, turn)
+                    missed = _first_missed(p, q, a, screw, candidates, i, j + 1, place, turn)
                     if missed < 0:
-                        missed = _first_missed(p, q, P, Q, a, screw, every, a, b + 1, place, turn)
+                        missed = _first_missed(p, q, a, screw, every, a, b + 1, place, turn)
                     held = missed < 0
                     if not held:
                         killer[i] = missed
@@ -163,8 +156,6 @@ def _screw(p: Array, q: Array, a: int, b: int) -> tuple[Any, ...]:
 def _first_missed(
     p: Array,
     q: Array,
-    P: Array,
-    Q: Array,
     a: int,
     screw: tuple[Any, ...],
     order: Array,
@@ -189,9 +180,9 @@ def _first_missed(
     lag, lead = np.cos(half), -sin_half
     for index in range(start, stop):
         k = order[index]
-        at_start = a0 * Q[k, 0] + a1 * Q[k, 1] + a2 * Q[k, 2] + a3 * Q[k, 3]
-        onward = r0 * Q[k, 0] + r1 * Q[k, 1] + r2 * Q[k, 2] + r3 * Q[k, 3]
-        d0, d1, d2 = P[k, 0] - p[a, 0], P[k, 1] - p[a, 1], P[k, 2] - p[a, 2]
+        at_start = a0 * q[k, 0] + a1 * q[k, 1] + a2 * q[k, 2] + a3 * q[k, 3]
+        onward = r0 * q[k, 0] + r1 * q[k, 1] + r2 * q[k, 2] + r3 * q[k, 3]
+        d0, d1, d2 = p[k, 0] - p[a, 0], p[k, 1] - p[a, 1], p[k, 2] - p[a, 2]
         while True:
             e0 = d0 - s * along[0] - ratio * (lag * across[0] + lead * turned[0])
             e1 = d1 - s * along[1] - ratio * (lag * across[1] + lead * turned[1])

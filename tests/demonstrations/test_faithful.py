@@ -113,24 +113,51 @@ def test_every_sample_of_every_recording_is_kept(
     assert np.mean(counts[16:]) <= 8.0
 
 
-@pytest.mark.parametrize("disturbed", ["rounded", "noise"])
-def test_noise_and_rounding_hardly_change_the_number_of_guiding_poses(
-    recordings: list[Recording], calibrated_arm: Arm, disturbed: str
+def disturbed(recording: Recording, noise: float) -> np.ndarray:
+    """Its joint angles with Gaussian noise in rad; rounded to 0.01 rad if that is 0."""
+    if noise == 0.0:
+        return np.round(recording.q, 2)
+    return recording.q + np.random.default_rng(1).normal(scale=noise, size=recording.q.shape)
+
+
+def test_coarse_rounding_keeps_the_promise_with_a_guiding_pose_more_at_most(
+    recordings: list[Recording], calibrated_arm: Arm
 ) -> None:
-    for recording in recordings[0], recordings[5], recordings[20]:
-        rng = np.random.default_rng(1)
-        q = np.round(recording.q, 2)
-        if disturbed == "noise":
-            q = recording.q + rng.normal(scale=3e-3, size=recording.q.shape)
-        counts = [
-            len(
-                faithful_guiding_poses(
-                    calibrated_arm.pose(angles), recording.X_WO, DEFAULT, t=recording.t
-                )[2]
-            )
-            for angles in (recording.q, q)
-        ]
-        assert abs(counts[1] - counts[0]) <= 1
+    counts = []
+    for recording in recordings:
+        plain = faithful_guiding_poses(
+            calibrated_arm.pose(recording.q), recording.X_WO, DEFAULT, t=recording.t
+        )
+        path = calibrated_arm.pose(disturbed(recording, 0.0))
+        X_OE, objects, kept = faithful_guiding_poses(path, recording.X_WO, DEFAULT, t=recording.t)
+        assert abs(len(kept) - len(plain[2])) <= 1, recording.name
+        guides = recording.X_WO[objects] @ X_OE
+        assert held_in_order(path[kept[0] : kept[-1] + 1], guides), recording.name
+        (measured,) = fidelity(path, recording.t, recording.X_WO, X_OE, objects, ["bowl"], DEFAULT)
+        assert measured.position <= 0.010
+        assert measured.rotation <= 0.1
+        counts.append(len(kept))
+    assert np.mean(counts) <= 8.0
+
+
+@pytest.mark.parametrize("noise", [0.001, 0.002, 0.003])
+def test_noise_hardly_changes_the_number_of_guiding_poses_and_the_motion_is_kept(
+    recordings: list[Recording], calibrated_arm: Arm, noise: float
+) -> None:
+    """Samples may be thrown off by more than the tolerances; what the hand did is within them."""
+    within = 0
+    for recording in recordings[::3]:
+        undisturbed = calibrated_arm.pose(recording.q)
+        plain = faithful_guiding_poses(undisturbed, recording.X_WO, DEFAULT, t=recording.t)
+        path = calibrated_arm.pose(disturbed(recording, noise))
+        X_OE, objects, kept = faithful_guiding_poses(path, recording.X_WO, DEFAULT, t=recording.t)
+        assert abs(len(kept) - len(plain[2])) <= 1, recording.name
+        guides = recording.X_WO[objects] @ X_OE
+        assert held_in_order(undisturbed[kept[0] : kept[-1] + 1], guides), recording.name
+        samples = path[kept[0] : kept[-1] + 1]
+        assert held_in_order(samples, guides, 0.014, 0.14), recording.name
+        within += held_in_order(samples, guides)
+    assert within >= (3 if noise == 0.003 else 10)
 
 
 def test_a_wrist_that_turns_on_the_spot(recordings: list[Recording], calibrated_arm: Arm) -> None:
