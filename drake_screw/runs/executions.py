@@ -14,7 +14,7 @@ from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
-from drake_screw.files import fresh_folder, write_folder
+from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Cause, Outcomes, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.runs.run import Run, open_run
@@ -120,14 +120,9 @@ def execute(
             (folder / "executions.html").write_text(page)
 
     folder = fresh_folder(opened.directory.path / "executions")
-    try:
+    remedy = "Executions are written beside the run; make its folder writable."
+    with writing(folder, remedy):
         write_folder(folder, fill)
-    except OSError as error:
-        raise RunDirectoryError(
-            f"cannot be written: {error.strerror}",
-            remedy="Executions are written beside the run; make its folder writable.",
-            file=folder,
-        ) from error
     return Executions(folder, found)
 
 
