@@ -18,7 +18,7 @@ from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Cause, Outcomes, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.runs.run import Run, open_run
-from drake_screw.tasks import draw
+from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.lifetime import scratch
 
@@ -235,20 +235,9 @@ def _fresh_instances(
     drawn, missing = np.zeros(regions.K, dtype=int), np.full(regions.K, per_region)
     places, outcomes = [], []
     while missing.any():
-        x_y_yaw = np.concatenate(
-            [
-                draw(
-                    regions,
-                    j,
-                    seed=setup.scenario.seed,
-                    round=ROUND,
-                    start=int(drawn[j]),
-                    count=int(missing[j]),
-                )
-                for j in range(regions.K)
-            ]
+        x_y_yaw, region = draw_in_all(
+            regions, missing, seed=setup.scenario.seed, round=ROUND, starts=drawn
         )
-        region = np.repeat(np.arange(regions.K), missing)
         planned = plan(x_y_yaw)
         places.append(x_y_yaw)
         outcomes.append(planned)

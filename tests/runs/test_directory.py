@@ -30,16 +30,14 @@ def test_what_cannot_be_written_is_named(run, name) -> None:
     else:
         place.unlink()
         place.mkdir()
-    with pytest.raises(RunDirectoryError, match="cannot be written: .* a directory") as caught:
-        match name:
-            case "run.json":
-                directory.save()
-            case "run.log":
-                directory.log("words")
-            case "round_01":
-                directory.add_round(rounds[0], lambda event, stem: None)
-            case _:
-                draw_run(run.setup, rounds, directory.path)
+    writes = {
+        "run.json": directory.save,
+        "run.log": lambda: directory.log("words"),
+        "round_01": lambda: directory.add_round(rounds[0], lambda event, stem: None),
+        "rounds.png": lambda: draw_run(run.setup, rounds, directory.path),
+    }
+    with pytest.raises(RunDirectoryError, match=r"cannot be written: .* a directory") as caught:
+        writes[name]()
     assert caught.value.file in (place, directory.path)
     assert "--resume" in str(caught.value)
 
