@@ -4,8 +4,9 @@
     python benchmarks/against.py ../before [--demonstrations 'demos/{task}' --model arm.sdf]
 
 Each checkout plans the same instances with its own code in a process of its own, one thread each.
-They take turns, some dozens of times, and each turn of the one is compared with the turn of the
-other beside it, by processor time: what else the machine does hits both alike. Run it twice with
+They take turns, and each turn of the one is compared with the turn of the other beside it, by
+processor time: what else the machine does hits both alike. Where memory happens to lie makes one
+process faster than the next by up to a fifth, so that both are begun afresh some times. Run it with
 the same checkout on both sides to see what is noise.
 """
 
@@ -46,7 +47,7 @@ class Checkout:
     def __init__(self, tree: Path, arguments: list[str]) -> None:
         paths = os.pathsep.join((str(tree), str(tree / "benchmarks")))
         self._process = subprocess.Popen(
-            [sys.executable, __file__, "--worker", *arguments],
+            [sys.executable, "-P", __file__, "--worker", *arguments],
             env=os.environ | {"PYTHONPATH": paths},
             cwd=tree,
             stdin=subprocess.PIPE,
@@ -74,8 +75,21 @@ class Checkout:
         raise SystemExit("a worker ended too early; its words stand above")
 
 
-def compare(before: Path, turns: int, arguments: list[str]) -> str:
+def compare(before: Path, begun: int, turns: int, arguments: list[str]) -> str:
     """A line of words about one task."""
+    taken = [take_turns(before, turns, arguments) for _ in range(begun)]
+    plans, seconds = taken[0][0], np.stack([each for _, each in taken])
+    ratios = np.median(seconds[..., 0] / seconds[..., 1], axis=1)
+    speeds = plans / seconds.min(axis=(0, 1))
+    return (
+        f"{arguments[0]:10} speed {np.median(ratios):.3f} of before ({begun} pairs of processes: "
+        f"{', '.join(f'{ratio:.2f}' for ratio in sorted(ratios))}); at best {speeds[0]:,.0f} "
+        f"before, {speeds[1]:,.0f} plans/s here"
+    )
+
+
+def take_turns(before: Path, turns: int, arguments: list[str]) -> tuple[int, np.ndarray]:
+    """Plans in a turn, and seconds (turns, 2) of the other checkout and of this one."""
     other, here = Checkout(before, arguments), Checkout(TREE, arguments)
     seconds = np.empty((turns, 2))
     for i in range(turns):  # ABBA, so that a drift of the machine's speed hits both alike
@@ -84,12 +98,7 @@ def compare(before: Path, turns: int, arguments: list[str]) -> str:
             seconds[i, column] = checkout.turn()
     for checkout in (other, here):
         checkout.end()
-    low, middle, high = np.quantile(seconds[:, 0] / seconds[:, 1], [0.25, 0.5, 0.75])
-    speeds = here.plans / seconds.min(axis=0)
-    return (
-        f"{arguments[0]:10} speed {middle:.3f} of before (quartiles {low:.3f} to {high:.3f}, "
-        f"{turns} turns); at best {speeds[0]:,.0f} before, {speeds[1]:,.0f} plans/s here"
-    )
+    return here.plans, seconds
 
 
 def main() -> None:
@@ -101,13 +110,14 @@ def main() -> None:
     parser.add_argument("--demonstrations", metavar="DIR", help="a library; {task} is replaced")
     parser.add_argument("--model", type=Path, help="of the arm that they were recorded on")
     parser.add_argument("--instances", type=int, default=1000)
-    parser.add_argument("--turns", type=int, default=40)
+    parser.add_argument("--begun", type=int, default=9, help="pairs of processes")
+    parser.add_argument("--turns", type=int, default=8, help="of each process")
     given = parser.parse_args()
     folder = None if given.demonstrations is None else os.path.abspath(given.demonstrations)
     model = None if given.model is None else os.path.abspath(given.model)
     for task in given.tasks:
         rest = [task, folder or "", model or "", str(given.instances)]
-        print(compare(given.before.resolve(), given.turns, rest))
+        print(compare(given.before.resolve(), given.begun, given.turns, rest))
 
 
 if __name__ == "__main__":

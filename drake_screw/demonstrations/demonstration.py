@@ -72,8 +72,8 @@ def demonstration_from_recording(
         recording: to learn from. A region-of-interest factor of its own overrides the
             configuration's, and objects of the task that it names override `task_objects`.
         arm: that was led.
-        config: how the path is cut: as published (see `segmentation`; the default), or faithfully
-            (see `faithful`).
+        config: how the path is cut: faithfully (see `faithful`; the default), or as published (see
+            `segmentation`).
         names: of the k objects; "object 1" and so on if None.
         task_objects: names of the objects that the hand works on; found by distance where empty.
 
@@ -81,7 +81,7 @@ def demonstration_from_recording(
         NoMotionKept: faithful segmentation keeps no motion of it, and says why.
         RecordingError: an object of the task has a name that no object has.
     """
-    config = config or SegmentationConfig()
+    config = config or FaithfulConfig()
     if recording.region_of_interest is not None:
         config = replace(config, region_of_interest=recording.region_of_interest)
     count = len(recording.X_WO)

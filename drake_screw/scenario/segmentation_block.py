@@ -46,7 +46,7 @@ Method = Annotated[
 
 
 class SegmentationBlock(Block):
-    method: Method = PUBLISHED
+    method: Method = FAITHFUL
     """faithful: the fewest screws that keep every sample near an object; published: Mahalingam and
     Chakraborty's, as in the paper"""
     spacing: Annotated[Positive | None, METRES] = None
@@ -74,7 +74,7 @@ class SegmentationBlock(Block):
         data = {} if data is None else data
         if not isinstance(data, dict):
             return data
-        defaults = DEFAULTS.get(str(data.get("method", PUBLISHED)), {})
+        defaults = DEFAULTS.get(str(data.get("method", FAITHFUL)), {})
         return {**defaults, **{name: value for name, value in data.items() if value is not None}}
 
     @property
@@ -90,7 +90,7 @@ class SegmentationBlock(Block):
                 yield Problem(
                     (name,),
                     f"the method {self.method} has no such key",
-                    f"Write `method: {foreign}`, or leave it out.",
+                    f"Leave it out, or write `method: {foreign}`.",
                 )
         try:
             _ = self.config

@@ -27,7 +27,7 @@ from drake_screw.files import (
 )
 from drake_screw.processes import WorkerLost, share_out
 from drake_screw.runs.directory import SCENARIO, now, versions
-from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.studies.experiment import Experiment, StudyRun, split
 from drake_screw.studies.figures import Distribution, save_distributions
@@ -211,7 +211,7 @@ def new_study(
         write_text(path / SCENARIO, dump_scenario(scenario))
         write_text(path / RUNS, csv_text([HEADER]))
         write_text(path / STUDY, json.dumps(record, indent=2) + "\n")
-    return Study(path, load_scenario(path / SCENARIO), record)
+    return Study(path, load_stored_scenario(path / SCENARIO), record)
 
 
 def open_study(path: PathLike) -> Study:
@@ -243,7 +243,7 @@ def open_study(path: PathLike) -> Study:
             remedy=f"Use the version that wrote it ({record.get('versions', {})}).",
             file=file,
         )
-    study = Study(path, load_scenario(path / SCENARIO), record)
+    study = Study(path, load_stored_scenario(path / SCENARIO), record)
     used = study.experiment.setup.workcell.model_file
     if file_hash(used) != model:
         raise RunDirectoryError(
@@ -269,7 +269,7 @@ def numbers_of_regions(text: str) -> tuple[int, ...]:
 
 
 def _experiment(scenario: Path) -> Experiment:
-    return Experiment(load_scenario(scenario))
+    return Experiment(load_stored_scenario(scenario))
 
 
 def _carry_out(experiment: Experiment, job: tuple[int, int]) -> StudyRun:

@@ -146,6 +146,7 @@ def test_a_run_goes_on_with_what_is_given_by_clicks_alone(browser, tmp_path) -> 
     assert "waiting" not in again.stdout
 
 
+@pytest.mark.slow
 def test_a_run_left_while_it_waits_is_carried_on_with_a_dropped_folder(browser, tmp_path) -> None:
     run, inbox = tmp_path / "run", tmp_path / "inbox"
     with command(

@@ -104,7 +104,8 @@ def test_recorded_demonstrations_have_the_published_number_of_guiding_poses(
     library = read_library(
         shared / "demos" / task, arm.joint_names, arm.lower, arm.upper, objects=1
     )
-    demonstrations = [demonstration_from_recording(recording, arm) for recording in library]
+    config = SegmentationConfig()
+    demonstrations = [demonstration_from_recording(recording, arm, config) for recording in library]
     assert [len(d.X_OE) for d in demonstrations] == COUNTS[task]
     for d, recording in zip(demonstrations, library, strict=True):
         assert d.name == recording.name

@@ -196,6 +196,7 @@ def test_paths_of_known_screws(shown: tuple[int, np.ndarray], seed: int) -> None
     assert screws_of(Y @ path)[0] == found
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=15)
 @given(known_screws(), st.integers(0, 2**32 - 1))
 def test_no_other_cuts_do_with_fewer_screws(shown: tuple[int, np.ndarray], seed: int) -> None:

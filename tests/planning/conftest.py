@@ -12,6 +12,7 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from drake_screw.demonstrations import (
     Demonstration,
+    SegmentationConfig,
     demonstration_from_recording,
     read_library,
 )
@@ -84,7 +85,7 @@ def recorded(shared: Path, calibrated_arm: Arm) -> Mapping[str, tuple[Demonstrat
     arm = calibrated_arm
     return {
         task: tuple(
-            demonstration_from_recording(recording, arm)
+            demonstration_from_recording(recording, arm, SegmentationConfig())
             for recording in read_library(
                 shared / "demos" / task, arm.joint_names, arm.lower, arm.upper
             )
