@@ -87,7 +87,7 @@ def lead(browser: Browser) -> list[float]:
     browser.click("#record")
     browser.until(lambda: "recording" in browser.text("#clock"))
     for axis, value in WAY:
-        browser.slide(f"#hand tr:nth-child({axis}) input", value)
+        browser.slide(f"#pose tr:nth-child({axis}) input", value)
     browser.until(
         lambda: np.linalg.norm(browser.node(HAND)["matrix"][:3, 3] - np.array(start)) > 0.25
     )

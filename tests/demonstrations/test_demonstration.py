@@ -25,7 +25,7 @@ COUNTS = {
 
 
 def sliding_hand() -> ScrewChain:
-    """Three prismatic joints along x, y, z and a wrist about z: q is the hand's place."""
+    """Three prismatic joints along x, y, z and a wrist about z: q is the end effector's place."""
     screws = np.zeros((4, 6))
     screws[:3, 3:] = np.eye(3)
     screws[3, 2] = 1.0

@@ -64,7 +64,7 @@ def seven() -> Arm:
 
 @pytest.fixture(scope="session")
 def planar() -> Arm:
-    """Three joints about z, with links of 0.5 m and 0.4 m and a hand 0.1 m out."""
+    """Three joints about z, with links of 0.5 m and 0.4 m and an end effector 0.1 m out."""
     z = "0 0 1"
     return serial_arm([("0 0 0.2", z, 2.8), ("0.5 0 0", z, 2.6), ("0.4 0 0", z, 2.6)])
 
