@@ -113,10 +113,11 @@ def test_a_demonstration_is_given_by_clicks_alone(browser) -> None:
         browser.click("#repeat")
         browser.until(lambda: browser.node("attempts") is None)
         browser.click("#record")
-        browser.slide("#pose tr:nth-child(1) input", 0.70)
+        for axis, value in ((1, 0.70), (2, 0.56), (3, 0.10)):
+            browser.slide(f"#pose tr:nth-child({axis}) input", value)
         browser.until(
             lambda: (
-                browser.text("#pose tr:nth-child(1) td:nth-child(3)") == "0.700 m"
+                browser.text("#pose tr:nth-child(2) td:nth-child(3)") == "0.560 m"
                 and float(browser.text("#clock").split()[1]) > 2.0
             )
         )
