@@ -57,7 +57,7 @@ def test_a_bystander_changes_nothing(tmp_path) -> None:
     text = find_resource("scenarios", "pouring", SCENARIO_SUFFIXES).read_text(encoding="utf-8")
     text = text.replace("{x: 4, y: 4}", "{bowl.x: 4, bowl.y: 4}")
     plans = []
-    for x, y in ((1.35, -0.9), (0.2, -1.2)):
+    for x, y in ((0.55, -0.4), (0.4, -0.5)):
         (tmp_path / "two.yaml").write_text(text.replace("\nregions:", f"\n{CUP % (x, y)}regions:"))
         setup = Setup(load_scenario(tmp_path / "two.yaml"))
         rng = np.random.default_rng(0)
