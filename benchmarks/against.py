@@ -35,6 +35,7 @@ def worker(task_name: str, folder: str | None, model: str | None, instances: int
     planner = BatchPlanner(task.arm.screw_chain(), threads=1)
     planner.all_outcomes(task.demonstrations, X_WO[:1], task.q_start)
     print("plans", len(X_WO) * len(task.demonstrations), flush=True)
+    print("poses", sum(len(d.X_OE) for d in task.demonstrations), flush=True)
     for _ in sys.stdin:
         began = time.process_time()
         planner.all_outcomes(task.demonstrations, X_WO, task.q_start)
@@ -54,7 +55,7 @@ class Checkout:
             stdout=subprocess.PIPE,
             text=True,
         )
-        self.plans = int(self._answer("plans"))
+        self.plans, self.poses = int(self._answer("plans")), int(self._answer("poses"))
 
     def turn(self) -> float:
         """Seconds of processor time that one turn takes."""
@@ -91,6 +92,11 @@ def compare(before: Path, begun: int, turns: int, arguments: list[str]) -> str:
 def take_turns(before: Path, turns: int, arguments: list[str]) -> tuple[int, np.ndarray]:
     """Plans in a turn, and seconds (turns, 2) of the other checkout and of this one."""
     other, here = Checkout(before, arguments), Checkout(TREE, arguments)
+    if other.poses != here.poses:
+        raise SystemExit(
+            f"not the same work: {other.poses} guiding poses before, {here.poses} here; have both "
+            "cut recordings alike (segmentation.method in the scenario)"
+        )
     seconds = np.empty((turns, 2))
     for i in range(turns):  # ABBA, so that a drift of the machine's speed hits both alike
         order = ((0, other), (1, here)) if i % 2 == 0 else ((1, here), (0, other))
