@@ -12,6 +12,8 @@ from drake_screw.errors import DrakeScrewError
 
 STANDARD_OUTPUT = "-"
 
+_REMEDY = "Give --json a file in a folder that exists and that you may write to, or -."
+
 
 class Output:
     """What a verb says and writes.
@@ -64,12 +66,10 @@ class Output:
         if self._json == STANDARD_OUTPUT:
             sys.stdout.write(text)
             return
-        from drake_screw.files import write_text
+        from drake_screw.files import write_text, writing
 
-        try:
+        with writing(Path(self._json), _REMEDY):
             write_text(Path(self._json), text)
-        except OSError as error:
-            raise _unwritable(Path(self._json), str(error.strerror)) from error
 
 
 def _check(file: Path) -> None:
@@ -82,8 +82,4 @@ def _check(file: Path) -> None:
 
 
 def _unwritable(file: Path, why: str) -> DrakeScrewError:
-    return DrakeScrewError(
-        f"cannot be written: {why}",
-        remedy="Give --json a file in a folder that exists and that you may write to, or -.",
-        file=file,
-    )
+    return DrakeScrewError(f"cannot be written: {why}", remedy=_REMEDY, file=file)

@@ -16,7 +16,7 @@ from drake_screw.typing import Array
 
 DONE, FAILED, AHEAD = "done", "failed", "never reached"
 FAR_AXIS = 1.0
-"""m. A screw whose axis lies farther from the hand than this looks straight."""
+"""m. A screw whose axis lies farther from the end effector than this looks straight."""
 STRAIGHT = 0.02
 """rad. A screw that turns less than this looks straight, too."""
 
@@ -91,7 +91,7 @@ class Attempt:
         return joint, float(self.margin[:, joint].min())
 
     def axis_distance(self, segment: int) -> float:
-        """Distance in m of the hand's way in a segment from its screw's axis."""
+        """Distance in m of the end effector's path in a segment from its screw's axis."""
         screw = self.screws
         middle = (self.starts[segment, :3, 3] + self.guides[segment, :3, 3]) / 2.0
         across = np.cross(middle - screw.point[segment], screw.axis[segment])
@@ -173,8 +173,8 @@ def headline(attempt: Attempt) -> str:
         touching = "; ".join(f"{a} touches {b}" for a, b in attempt.bodies[:2])
         return f"fails {where}: {touching or 'the arm touches something'}"
     return (
-        f"fails {where}: the hand gets no farther along this screw; the arm is stretched out or "
-        "near a singular pose"
+        f"fails {where}: the end effector gets no farther along this screw; the arm is stretched "
+        "out or near a singular pose"
     )
 
 
