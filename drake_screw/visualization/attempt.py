@@ -156,7 +156,7 @@ def headline(attempt: Attempt) -> str:
         joint, margin = attempt.tightest
         return (
             f"succeeds in all {total} screw segments; {arm.joint_names[joint]} comes nearest to a "
-            f"limit, {margin:.3f} {unit(arm, joint)} away"
+            f"limit, {margin:.3f} {arm.units[joint]} away"
         )
     segment, fraction = int(plan.outcome.segment), float(plan.outcome.fraction)
     where = f"in screw segment {segment + 1} of {total}, {fraction:.1%} along it"
@@ -167,7 +167,7 @@ def headline(attempt: Attempt) -> str:
             which, limit = "upper", arm.upper[joint]
         return (
             f"fails {where}: {arm.joint_names[joint]} reaches its {which} limit, "
-            f"{limit:.3f} {unit(arm, joint)}".replace("-", "−")
+            f"{limit:.3f} {arm.units[joint]}".replace("-", "−")
         )
     if attempt.cause == Cause.COLLISION:
         touching = "; ".join(f"{a} touches {b}" for a, b in attempt.bodies[:2])
@@ -192,9 +192,3 @@ def describe_segment(attempt: Attempt, segment: int) -> str:
     pitch = float(screw.pitch[segment]) * 2.0 * np.pi
     text = f"{turn}, {along * 100:+.1f} cm along the axis, pitch {pitch * 100:+.0f} cm/turn"
     return text.replace("-", "−")
-
-
-def unit(arm: Arm, joint: int) -> str:
-    """The unit of a joint's position."""
-    revolute = arm.plant.GetJointByName(arm.joint_names[joint]).type_name() == "revolute"
-    return "rad" if revolute else "m"

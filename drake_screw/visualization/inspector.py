@@ -18,7 +18,7 @@ from drake_screw.robot import ObjectConfig, Workcell
 from drake_screw.screws import sclerp_position
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes, screw_shapes
-from drake_screw.visualization.attempt import AHEAD, FAILED, Attempt, unit
+from drake_screw.visualization.attempt import AHEAD, FAILED, Attempt
 from drake_screw.visualization.drawing import draw, draw_frames
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
@@ -160,7 +160,7 @@ class Inspector:
         arm = attempt.arm
         X_WJ = self.linkage.joint_frames(joint, q)
         color = STATUS_COLORS[FAILED]
-        if unit(arm, joint) != "rad":
+        if arm.units[joint] != "rad":
             mark = meshes.ring(DIAL[1], 0.014)
             draw(self.meshcat, f"{path}/mark", mark, color)
             return {f"{path}/mark": X_WJ}

@@ -17,7 +17,6 @@ from drake_screw.visualization.attempt import (
     FAILED,
     describe_segment,
     headline,
-    unit,
 )
 from drake_screw.visualization.inspector import AXIS, Drawn
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
@@ -134,7 +133,7 @@ def drawn_state(drawn: Drawn) -> dict[str, Any]:
         "joints": [
             {
                 "name": name,
-                "unit": unit(arm, j),
+                "unit": arm.units[j],
                 "lower": float(arm.lower[j]),
                 "upper": float(arm.upper[j]),
                 "strip": joint_strip(attempt, j, samples),
