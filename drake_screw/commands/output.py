@@ -11,6 +11,7 @@ from rich.console import Console
 from drake_screw.errors import DrakeScrewError
 
 STANDARD_OUTPUT = "-"
+JSON = "--json"
 
 
 class Output:
@@ -31,7 +32,7 @@ class Output:
         self.console = Console(stderr=json == STANDARD_OUTPUT)
         self._json = json
         if json is not None and json != STANDARD_OUTPUT:
-            _check(Path(json))
+            check_writable(Path(json), JSON)
 
     def say(self, text: object) -> None:
         """Print words as they are, however long."""
@@ -69,21 +70,31 @@ class Output:
         try:
             write_text(Path(self._json), text)
         except OSError as error:
-            raise _unwritable(Path(self._json), str(error.strerror)) from error
+            raise _unwritable(Path(self._json), JSON, str(error.strerror)) from error
 
 
-def _check(file: Path) -> None:
+def check_writable(file: Path, option: str) -> None:
+    """Refuse a file that cannot be written, before the work is done.
+
+    Args:
+        file: that an option names.
+        option: its name, such as ``--html``.
+
+    Raises:
+        DrakeScrewError: there cannot be such a file.
+    """
     if file.is_dir():
-        raise _unwritable(file, "it is a folder")
+        raise _unwritable(file, option, "it is a folder")
     if not file.parent.is_dir():
-        raise _unwritable(file, f"there is no folder '{file.parent}'")
+        raise _unwritable(file, option, f"there is no folder '{file.parent}'")
     if not os.access(file.parent, os.W_OK):
-        raise _unwritable(file, "its folder is read-only")
+        raise _unwritable(file, option, "its folder is read-only")
 
 
-def _unwritable(file: Path, why: str) -> DrakeScrewError:
+def _unwritable(file: Path, option: str, why: str) -> DrakeScrewError:
+    other = ", or -" if option == JSON else ""
     return DrakeScrewError(
         f"cannot be written: {why}",
-        remedy="Give --json a file in a folder that exists and that you may write to, or -.",
+        remedy=f"Give {option} a file in a folder that exists and that you may write to{other}.",
         file=file,
     )

@@ -13,12 +13,9 @@ from drake_screw.planning import Cause, Outcomes, Plan
 from drake_screw.robot import Arm
 from drake_screw.screws import Screw, screw_between
 from drake_screw.typing import Array
+from drake_screw.visualization.screw_drawing import STRAIGHT, axis_distance, looks_straight
 
 DONE, FAILED, AHEAD = "done", "failed", "never reached"
-FAR_AXIS = 1.0
-"""m. A screw whose axis lies farther from the hand than this looks straight."""
-STRAIGHT = 0.02
-"""rad. A screw that turns less than this looks straight, too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,15 +89,11 @@ class Attempt:
 
     def axis_distance(self, segment: int) -> float:
         """Distance in m of the hand's way in a segment from its screw's axis."""
-        screw = self.screws
-        middle = (self.starts[segment, :3, 3] + self.guides[segment, :3, 3]) / 2.0
-        across = np.cross(middle - screw.point[segment], screw.axis[segment])
-        return float(np.linalg.norm(across))
+        return axis_distance(self.starts[segment], self.guides[segment])
 
     def straight(self, segment: int) -> bool:
         """Whether a segment looks like a translation: it hardly turns, or about a far axis."""
-        turns = float(self.screws.angle[segment])
-        return turns < STRAIGHT or self.axis_distance(segment) > FAR_AXIS
+        return looks_straight(self.starts[segment], self.guides[segment])
 
     def samples(self, most: int) -> NDArray[np.int64]:
         """Indices (p,) of about `most` points of the plan, the ends of all segments among them."""

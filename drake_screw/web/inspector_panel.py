@@ -18,11 +18,12 @@ from drake_screw.visualization.attempt import (
     describe_segment,
     headline,
 )
-from drake_screw.visualization.inspector import AXIS, Drawn
+from drake_screw.visualization.inspector import Drawn
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
 from drake_screw.visualization.rounds import headline as round_headline
 from drake_screw.visualization.rounds import sample
 from drake_screw.visualization.scene import MOST_DOTS
+from drake_screw.visualization.screw_drawing import AXIS
 from drake_screw.web.charts import joint_strip, map_words, work_area_map
 from drake_screw.web.selection import Selection, steps
 
