@@ -27,7 +27,7 @@ from drake_screw.visualization.screw_drawing import draw_screw, screw_track
 
 FRAMES = 12
 """A second, of the arm as it was led."""
-VIEW = (1.0, 0.75, 0.65)
+VIEW = (0.8, 0.55, 0.5)
 """m, of the camera from what it looks at."""
 
 
@@ -42,7 +42,7 @@ def draw_look(meshcat: Meshcat, look: Look, objects: Sequence[ObjectConfig]) -> 
     meshcat.Delete("/recording")
     path = look.X_WE[thin(look.X_WE, 0.004, np.inf), :3, 3]
     if len(path) > 1:
-        draw(meshcat, "/recording/path", meshes.tube(path, 0.004), QUIET)
+        draw(meshcat, "/recording/path", meshes.tube(path, 0.006), QUIET)
     for i, (item, X) in enumerate(zip(objects, look.X_WO, strict=True)):
         bowl = meshes.bowl(item.radius, item.height).moved(X)
         draw(meshcat, f"/recording/objects/{item.name}", bowl, BOWL)
