@@ -192,10 +192,8 @@ class LookSummary:
         yield from (("importer", note) for note in self.notes)
         yield "joints", str(self.tightest)
         yield from ((item.name, str(item)) for item in self.objects)
-        yield (
-            "tolerances",
-            f"{self.position_tolerance * 1e3:g} mm, {self.rotation_tolerance:.2g} rad",
-        )
+        position, rotation = self.position_tolerance * 1e3, self.rotation_tolerance
+        yield "tolerances", f"{position:g} mm and {rotation:.2g} rad from the screws"
         yield from (("dropped", text) for text in self.dropped_words())
 
     def dropped_words(self) -> Iterator[str]:

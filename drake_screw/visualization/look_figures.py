@@ -155,8 +155,9 @@ def _mark_guides(ax: Axes, look: Look) -> None:
 
 def _legend(ax: Axes, look: Look) -> None:
     handles, labels = ax.get_legend_handles_labels()
-    handles.append(Patch(color=QUIET, alpha=0.3, linewidth=0))
-    labels.append("in the region of interest")
+    if look.shown.regions.visits:
+        handles.append(Patch(color=QUIET, alpha=0.3, linewidth=0))
+        labels.append("in the region of interest")
     if look.shown.regions.left_out:
         handles.append(Patch(fill=False, hatch=_HATCH, edgecolor=QUIET, linewidth=0))
         labels.append("another visit, left out")

@@ -33,12 +33,13 @@ def view_figure(look: Look, objects: Sequence[ObjectConfig]) -> Figure:
     """
     figure = Figure(figsize=(WIDTH, 5.0))
     p_WE = look.X_WE[:, :3, 3]
-    whole = figure.add_axes((0.0, 0.1, 0.46, 0.9), **_AXES)
+    left = 0.0 if look.screws else 0.25
+    whole = figure.add_axes((left, 0.1, 0.46, 0.9), **_AXES)
     _draw(whole, look, p_WE, np.concatenate([p_WE, look.X_WO[:, :3, 3]]))
     for item, X in zip(objects, look.X_WO, strict=True):
         _draw_bowl(whole, item, X)
     titles = {"y": 0.96, "ha": "center", "va": "top", "fontsize": 9, "color": INK}
-    figure.text(0.25, s="as a whole", **titles)
+    figure.text(left + 0.25, s="as a whole", **titles)
     if look.screws:
         figure.text(0.74, s="from the first guiding pose to the last", **titles)
         near = figure.add_axes((0.5, 0.1, 0.46, 0.9), **_AXES)
