@@ -6,7 +6,7 @@ WORKERS ?= auto
 MODULE ?=
 SAMPLE ?=
 
-.PHONY: run test install install-test lint types layers unit notebooks mutate hooks clean help
+.PHONY: run test slow install install-test lint types layers unit notebooks mutate hooks clean help
 
 help:  ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -49,6 +49,9 @@ layers: install-test  ## import-linter: data flows one way
 unit: install-test  ## pytest with coverage
 	$(BIN)/coverage erase
 	$(BIN)/pytest -n $(WORKERS) --cov=drake_screw --cov-report=term
+
+slow: install-test  ## the long trials that `make test` leaves out
+	$(BIN)/pytest -n $(WORKERS) -m slow
 
 notebooks: install-test  ## run the tutorials
 	$(BIN)/pytest --nbmake --nbmake-timeout=300 -n $(WORKERS) tutorials

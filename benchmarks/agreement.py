@@ -14,7 +14,7 @@ from drake_screw.planning import BatchPlanner, Outcomes, ReferencePlanner
 from drake_screw.typing import Array
 
 SLACK = 0.005  # rad, of the joint limits that may explain a disagreement
-RACING = 20.0  # joint rate per hand motion that only the edge of reach explains
+NEAR_SINGULAR = 20.0  # |dq/ds| per unit of motion that only the edge of reach explains
 
 
 def recorded_outcomes(task: Task, file: Path, outcomes: Callable[[Array], Outcomes]) -> dict:
@@ -60,7 +60,7 @@ def agreement(task: Task, count: int, verify: int, seed: int) -> dict[str, Any]:
     disagreements = []
     for k, i in enumerate(odd):
         why = [name.strip() for name, success in again.items() if success[k] == ours.success[i]]
-        if fine.rate[i] > RACING:
+        if fine.rate[i] > NEAR_SINGULAR:
             why.append("reach")
         disagreements.append(
             {

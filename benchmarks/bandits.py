@@ -206,7 +206,7 @@ def false(arguments: argparse.Namespace) -> dict[str, Any]:
     """How many runs certify although one region fails just as often as must be ruled out."""
     results: dict[str, Any] = {}
 
-    def tell(title: str, events: int) -> None:
+    def show(title: str, events: int) -> None:
         interval = binomtest(events, arguments.runs).proportion_ci()
         low, high = interval.low, interval.high
         results[title] = {"events": events, "runs": arguments.runs, "interval": [low, high]}
@@ -223,9 +223,9 @@ def false(arguments: argparse.Namespace) -> dict[str, Any]:
                 for runs, i in parts
             ]
             title = f"{name}, delta {'' if spend else 'not '}spent"
-            tell(title, sum(job.result() for job in jobs))
+            show(title, sum(job.result() for job in jobs))
     others = [name for name in STRATEGIES if name not in FAST]
-    tell(f"{', '.join(others)}", crossings(arguments.runs, arguments.seed))
+    show(f"{', '.join(others)}", crossings(arguments.runs, arguments.seed))
     return results
 
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from drake_screw.runs.executions import collision_free_planner, known_demonstrations
 from drake_screw.runs.run import open_run
-from drake_screw.tasks import draw
+from drake_screw.tasks import draw_in_all
 from drake_screw.visualization.palette import failure_color, ink_on
 
 ROUND = 2_000_000
@@ -26,12 +26,7 @@ def measure(run: Path, per_region: int) -> tuple[str, list[np.ndarray], np.ndarr
     opened = open_run(run)
     setup, demonstrations = opened.setup, known_demonstrations(opened)
     regions, start = setup.regions, setup.workcell.start
-    places = np.concatenate(
-        [
-            draw(regions, j, seed=setup.scenario.seed, round=ROUND, start=0, count=per_region)
-            for j in range(regions.K)
-        ]
-    )
+    places, _ = draw_in_all(regions, per_region, seed=setup.scenario.seed, round=ROUND)
     X_WO = setup.area.X_WO(places)
     rates, speeds = [], []
     for planner in (setup.batch_planner, collision_free_planner(setup)):

@@ -112,7 +112,7 @@ def main() -> None:
         f"control period             {period['mean']:8.3f} ms computing, median "
         f"{period['median']:.3f}, 99 % below {period['p99']:.3f}"
     )
-    print(f"\n{'':27}{'simulation':>12}{'hand off its set point':>26}{'off its screw':>16}")
+    print(f"\n{'':27}{'simulation':>12}{'tracking error':>26}{'path error':>16}")
     for name, follow in (("executor", True), ("joint path by the clock", False)):
         station = build_station(
             setup.robot, table=setup.table, objects=setup.objects, follow_screws=follow

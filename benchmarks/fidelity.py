@@ -3,11 +3,11 @@
     python benchmarks/fidelity.py --demonstrations 'demos/{task}' [--model arm.sdf] [--instances N]
 
 prints two tables in Markdown. One is of all recordings of a task: guiding poses (mean, most), the
-largest deviation of the samples kept (median of the recordings, worst), the hand's turn near the
-object that is lost (mean, worst, and recordings that lose more than 0.2 rad), the share of the time
-near the object that is kept, the share of N instances for which one demonstration has a plan within
-the joint limits (mean), and the processor's time for a recording (median, most). The other has a
-line for each recording. `drake_screw.demonstrations.fidelity` says what is measured.
+largest deviation of the samples kept (median of the recordings, worst), the end effector's turn
+near the object that is lost (mean, worst, and recordings that lose more than 0.2 rad), the share of
+the time near the object that is kept, the share of N instances for which one demonstration has a
+plan within the joint limits (mean), and the processor's time for a recording (median, most). The
+other has a line for each recording. `drake_screw.demonstrations.fidelity` says what is measured.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from drake_screw.planning.contract import (
     RATE_LIMIT,
     RESIDUAL_LIMIT,
     ROTATION_TOLERANCE,
-    hand_motion,
+    motion_size,
 )
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import inverse, log, pose, rotation_angle, shift, translation_distance
@@ -34,7 +34,7 @@ class FineOutcomes:
     Attributes:
         cause, segment, joint: (P,) as in `Outcomes`.
         margin: (P,) rad or m, the least distance to a joint limit on the way.
-        rate: (P,) the largest joint rate per hand motion on the way.
+        rate: (P,) the largest joint rate per unit of end-effector motion on the way.
     """
 
     cause: Array
@@ -45,7 +45,7 @@ class FineOutcomes:
 
 
 class Kinematics:
-    """Hand pose and Jacobian of an arm of at least six joints, for many configurations."""
+    """End-effector pose and Jacobian of an arm of at least six joints, for many configurations."""
 
     def __init__(self, chain: ScrewChain) -> None:
         if chain.n < 6:
@@ -118,14 +118,14 @@ def fine_outcomes(
         X_WE, J = arm(q[live])
         goal = X_WG[live, segment[live]]
         V = log(goal @ inverse(X_WE)) / (1.0 - s[live])[:, None]
-        size[live] = np.where(s[live] == 0.0, hand_motion(shift(V, X_WE[:, :3, 3])), size[live])
+        size[live] = np.where(s[live] == 0.0, motion_size(shift(V, X_WE[:, :3, 3])), size[live])
         k1, rest = rates(J, V)
         rate = np.linalg.norm(k1, axis=1)
         ratio = rate / np.maximum(size[live], 1e-12)
         out.rate[live] = np.maximum(out.rate[live], ratio)
         stuck = rate > rate_limit * size[live]
         stuck |= (
-            hand_motion(shift(rest, X_WE[:, :3, 3])) * (1.0 - s[live]) > RESIDUAL_LIMIT * size[live]
+            motion_size(shift(rest, X_WE[:, :3, 3])) * (1.0 - s[live]) > RESIDUAL_LIMIT * size[live]
         )
         live = _end(out, live, segment, stuck, Cause.UNREACHABLE)
         V, k1, rate = V[~stuck], k1[~stuck], rate[~stuck]

@@ -21,7 +21,7 @@ import numpy as np
 from drake_screw.bandits.naive_pac import most_failures, sample_size
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.studies.experiment import Experiment, split
-from drake_screw.tasks import draw
+from drake_screw.tasks import draw_in_all
 
 K = 16
 TABLE = 2048
@@ -41,9 +41,7 @@ def main() -> None:
         changes += [f"robot.model={arguments.model.resolve()}", "robot.parked={}"]
     setup = Experiment(load_scenario(arguments.task, changes)).setup
     regions, goal, recordings = split(setup.area, K), setup.goal, setup.teacher.recordings
-    places = np.concatenate(
-        [draw(regions, j, seed=0, round=0, start=0, count=TABLE) for j in range(K)]
-    )
+    places, _ = draw_in_all(regions, TABLE, seed=0, round=0)
     learned = [setup.learn(recording) for recording in recordings]
     planned = setup.planner.all_outcomes(learned, setup.area.X_WO(places), setup.workcell.start)
     segment = np.where(planned.success, np.iinfo(np.int16).max, planned.segment)

@@ -71,10 +71,12 @@ def nearest(name: str, valid: Iterable[str]) -> str | None:
 
 
 def suggestion(name: str, valid: Iterable[str], plural: str) -> str:
-    """For example ``Did you mean 'beta'? Keys: beta, epsilon``."""
+    """For example ``Did you mean 'beta'? Keys: beta, epsilon``; ``Keys: none`` without any."""
     valid = list(valid)
     guess = nearest(name, valid)
-    return (f"Did you mean '{guess}'? " if guess else "") + f"{plural}: {', '.join(valid)}"
+    return (
+        f"Did you mean '{guess}'? " if guess else ""
+    ) + f"{plural}: {', '.join(valid) or 'none'}"
 
 
 def unknown(kind: str, name: str, where: str, valid: Iterable[str]) -> tuple[str, str]:

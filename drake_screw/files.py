@@ -8,9 +8,14 @@ import hashlib
 import io
 import os
 import shutil
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
+
+from drake_screw.errors import DrakeScrewError, RunDirectoryError
+
+WRITABLE_OUTPUT = "Give an --output in a folder that exists and that you may write to."
 
 
 def write_text(file: Path, text: str) -> None:
@@ -55,6 +60,48 @@ def write_folder(folder: Path, fill: Callable[[Path], None]) -> None:
     fill(temporary)
     shutil.rmtree(folder, ignore_errors=True)
     os.replace(temporary, folder)
+
+
+@contextmanager
+def writing(
+    place: Path, remedy: str, kind: type[DrakeScrewError] = RunDirectoryError
+) -> Iterator[None]:
+    """A context in which a file or folder that cannot be written is an error for its user.
+
+    Args:
+        place: what is written; it stands in the message.
+        remedy: what the user can do about it.
+        kind: of error.
+
+    Raises:
+        DrakeScrewError: of that kind, where the operating system refuses.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise kind(
+            f"cannot be written: {error.strerror or error}", remedy=remedy, file=place
+        ) from error
+
+
+def make_folder(path: Path, what: str) -> None:
+    """Make the folder of something new, such as a run; an empty one is taken as it is.
+
+    Args:
+        path: of the folder.
+        what: it is for, a word such as "run".
+
+    Raises:
+        RunDirectoryError: there is something at that place already.
+        OSError: it cannot be written.
+    """
+    if path.exists() and (not path.is_dir() or any(path.iterdir())):
+        raise RunDirectoryError(
+            f"exists already; a {what} never overwrites anything",
+            remedy=f"Give another --output, or continue a {what} with --resume.",
+            file=path,
+        )
+    path.mkdir(parents=True, exist_ok=True)
 
 
 def fresh_folder(parent: Path) -> Path:

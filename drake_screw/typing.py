@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[Any]
-    """An array; its shape and units are told where it is used."""
+    """An array; its shape and units are stated where it is used."""
 else:
 
     def __getattr__(name: str) -> Any:

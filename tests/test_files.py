@@ -6,7 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from drake_screw.files import file_hash, fresh_folder, write_folder, write_text
+from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
+from drake_screw.files import (
+    file_hash,
+    fresh_folder,
+    make_folder,
+    write_folder,
+    write_text,
+    writing,
+)
 
 
 def test_a_fresh_folder_is_another_one_each_time(tmp_path: Path) -> None:
@@ -31,6 +39,28 @@ def test_a_folder_that_cannot_be_filled_does_not_appear(tmp_path: Path) -> None:
     write_folder(tmp_path / "out", lambda folder: write_text(folder / "other", "second"))
     assert [f.name for f in (tmp_path / "out").iterdir()] == ["other"]
     assert [f.name for f in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_folder_is_made_where_there_is_nothing_or_an_empty_one(tmp_path: Path) -> None:
+    make_folder(tmp_path / "a" / "b", "run")
+    make_folder(tmp_path / "a" / "b", "run")
+    (tmp_path / "file").write_text("kept")
+    for taken in (tmp_path / "a", tmp_path / "file"):
+        with pytest.raises(RunDirectoryError, match="a run never overwrites anything") as caught:
+            make_folder(taken, "run")
+        assert caught.value.file == taken
+        assert "continue a run with --resume" in str(caught.value)
+    assert (tmp_path / "file").read_text() == "kept"
+
+
+def test_what_the_system_refuses_is_an_error_with_a_remedy(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    place = tmp_path / "file" / "below"
+    with pytest.raises(ScenarioError) as caught, writing(place, "Choose another.", ScenarioError):
+        write_text(place, "text")
+    assert str(caught.value) == f"{place}: cannot be written: Not a directory\n  Choose another."
+    with pytest.raises(DrakeScrewError, match="cannot be written: quota"), writing(place, ""):
+        raise OSError("quota")
 
 
 def test_text_replaces_a_file_at_once(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from drake_screw.acquisition.events import Evaluation, RegionsEvaluated
 from drake_screw.bandits import Strategy, Verdict
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Outcomes, Planner, concatenate
-from drake_screw.tasks import GridRegions, draw
+from drake_screw.tasks import GridRegions, draw_in_all
 from drake_screw.typing import Array
 
 BATCH = 16_384
@@ -76,19 +76,12 @@ class _Pulls:
         before = self._failures.copy()
         if not counts.any():
             return np.zeros_like(counts)
-        region = np.repeat(np.arange(len(counts)), counts)
-        x_y_yaw = np.concatenate(
-            [
-                draw(
-                    self._by.regions,
-                    j,
-                    seed=self._by.seed,
-                    round=self._round,
-                    start=int(self._samples[j]),
-                    count=int(counts[j]),
-                )
-                for j in np.flatnonzero(counts).tolist()
-            ]
+        x_y_yaw, region = draw_in_all(
+            self._by.regions,
+            counts,
+            seed=self._by.seed,
+            round=self._round,
+            starts=self._samples,
         )
         for first in range(0, len(region), BATCH):
             self._batch(x_y_yaw[first : first + BATCH], region[first : first + BATCH])

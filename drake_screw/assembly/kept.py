@@ -12,10 +12,15 @@ from drake_screw.demonstrations import Recording
 def named_recordings(setup: Setup) -> tuple[Recording, ...]:
     """The recordings of a recorded teacher, and those to start from."""
     initial = () if isinstance(setup.initial, int) else setup.initial
+    return (*initial, *(teacher_recordings(setup) or ()))
+
+
+def teacher_recordings(setup: Setup) -> tuple[Recording, ...] | None:
+    """The recordings that the teacher chooses from; None if it is not a recorded one."""
     if setup.scenario.teacher.kind == "interactive":
-        return initial
+        return None
     teacher = setup.teacher
-    return (*initial, *(teacher.recordings if isinstance(teacher, RecordedTeacher) else ()))
+    return tuple(teacher.recordings) if isinstance(teacher, RecordedTeacher) else None
 
 
 def kept(setup: Setup, recordings: Sequence[Recording]) -> tuple[str, ...]:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drake_screw.acquisition import RecordedTeacher, UsableLessons, random_suggestion
-from drake_screw.assembly.kept import kept, named_recordings
+from drake_screw.acquisition import UsableLessons, random_suggestion
+from drake_screw.assembly.kept import kept, named_recordings, teacher_recordings
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import CertifyOrSplit
 from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
@@ -203,8 +203,7 @@ def preview(scenario: Scenario) -> Preview:
     """
     setup = Setup(scenario)
     arm, goal, tree, block = setup.workcell.arm, setup.goal, setup.tree, scenario.teacher
-    teacher = None if block.kind == "interactive" else setup.teacher
-    recorded = isinstance(teacher, RecordedTeacher)
+    recordings = teacher_recordings(setup)
     chain, recorder = arm.screw_chain(), setup.recorder
     other = None
     if recorder.model_file is not None:
@@ -227,10 +226,11 @@ def preview(scenario: Scenario) -> Preview:
         guarantee=setup.bandit.guarantee,
         teacher=block.kind,
         motion=str(block.motion) if block.kind == "simulated" else None,
-        recordings=len(teacher.recordings) if isinstance(teacher, RecordedTeacher) else None,
+        recordings=None if recordings is None else len(recordings),
         kept=kept(setup, named_recordings(setup)),
         recorded_on=other,
-        recordings_named=recorded or not isinstance(scenario.demonstrations.initial, int),
+        recordings_named=recordings is not None
+        or not isinstance(scenario.demonstrations.initial, int),
         budget=scenario.demonstrations.budget,
         farthest_corner=_farthest_corner(setup),
         samples=_samples(setup),

@@ -1,7 +1,7 @@
 """Recordings, and the arm they were made on: the scenario's own, or that of another robot.
 
 Guiding poses belong to the object, so the arm that shows and the arm that does it may differ. What
-they must share is the hand: where the frame that was led sits on the tool, and how it is turned.
+they must share is the end effector's frame: where on the tool it sits, and how it is turned.
 """
 
 from __future__ import annotations
@@ -48,7 +48,8 @@ class Learning:
 
     Attributes:
         segmentation: how paths are cut into screws.
-        task_objects: names of the objects that the hand works on; found by distance where empty.
+        task_objects: names of the objects that the end effector works on; found by distance where
+            empty.
     """
 
     segmentation: SegmentationConfig | FaithfulConfig

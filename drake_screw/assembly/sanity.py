@@ -44,7 +44,8 @@ def check_reach(scenario: Scenario, arm: Arm, area: WorkArea) -> None:
         if away > chain.reach + TOOL:
             raise ScenarioError(
                 f"objects.{i}: the work area of '{item.name}' is out of reach: its nearest "
-                f"point is {away:.2f} m from the shoulder, the hand gets {chain.reach:.2f} m",
+                f"point is {away:.2f} m from the shoulder, the end effector gets "
+                f"{chain.reach:.2f} m",
                 remedy="Move the work area towards the robot; x, y and z are in metres, "
                 f"seen from '{scenario.robot.base}'.",
                 file=scenario.source,

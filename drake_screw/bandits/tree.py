@@ -64,7 +64,7 @@ class CertifyOrSplit:
     Args:
         goal: what to certify.
         dimension: axes of the unit box.
-        smallest: volume of the smallest cells told apart, in (0, 1].
+        smallest: volume of the smallest cells distinguished, in (0, 1].
         level: failure probability tolerated in a cell of that volume, in (0, 1).
 
     Raises:

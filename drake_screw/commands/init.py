@@ -30,6 +30,7 @@ def init(
 
     It is a copy of a shipped one, in which every key is explained.
     """
+    from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
     from drake_screw.resources import SCENARIO_SUFFIXES, find_resource, list_resources
 
     shipped = list_resources("scenarios", SCENARIO_SUFFIXES)
@@ -43,19 +44,12 @@ def init(
         )
     source = find_resource("scenarios", name, SCENARIO_SUFFIXES)
     text = scenario_copy(source.read_text(encoding="utf-8"), source.parent)
-    try:
-        with file.open("x", encoding="utf-8") as written:
-            written.write(text)
-    except FileExistsError as error:
+    if file.exists():
         raise DrakeScrewError(
             "exists already; nothing is overwritten", remedy="Give another --output.", file=file
-        ) from error
-    except OSError as error:
-        raise DrakeScrewError(
-            f"cannot be written: {error.strerror}",
-            remedy="Give an --output in a folder that exists and that you may write to.",
-            file=file,
-        ) from error
+        )
+    with writing(file, WRITABLE_OUTPUT):
+        write_text(file, text)
     out = Output()
     out.say(f"written: {file}; change it, then")
     out.say(f"  drake-screw check {file}")

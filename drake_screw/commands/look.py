@@ -47,8 +47,8 @@ def look(
 ) -> None:
     """Look at a recording, or a folder of them, before any run.
 
-    How faithfully it is kept and what is dropped, its screws, how near the hand comes to the
-    objects, and the joints to their limits; or why it is not used.
+    How faithfully it is kept and what is dropped, its screws, how near the end effector
+    comes to the objects, and the joints to their limits; or why it is not used.
     """
     output = Output(json)
     if html is not None:

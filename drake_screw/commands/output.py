@@ -65,12 +65,10 @@ class Output:
         if self._json == STANDARD_OUTPUT:
             sys.stdout.write(text)
             return
-        from drake_screw.files import write_text
+        from drake_screw.files import write_text, writing
 
-        try:
+        with writing(Path(self._json), writable(JSON)):
             write_text(Path(self._json), text)
-        except OSError as error:
-            raise _unwritable(Path(self._json), JSON, str(error.strerror)) from error
 
 
 def check_writable(file: Path, option: str) -> None:
@@ -91,10 +89,11 @@ def check_writable(file: Path, option: str) -> None:
         raise _unwritable(file, option, "its folder is read-only")
 
 
-def _unwritable(file: Path, option: str, why: str) -> DrakeScrewError:
+def writable(option: str) -> str:
+    """What to do about a file that an option names and that cannot be written."""
     other = ", or -" if option == JSON else ""
-    return DrakeScrewError(
-        f"cannot be written: {why}",
-        remedy=f"Give {option} a file in a folder that exists and that you may write to{other}.",
-        file=file,
-    )
+    return f"Give {option} a file in a folder that exists and that you may write to{other}."
+
+
+def _unwritable(file: Path, option: str, why: str) -> DrakeScrewError:
+    return DrakeScrewError(f"cannot be written: {why}", remedy=writable(option), file=file)

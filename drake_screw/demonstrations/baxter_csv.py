@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from drake_screw.errors import RecordingError, nearest
+from drake_screw.errors import RecordingError, suggestion
 from drake_screw.typing import Array, PathLike
 
 _ARM = ("s0", "s1", "e0", "e1", "w0", "w1", "w2", "gripper")
@@ -34,11 +34,9 @@ def read_csv(file: PathLike, joint_names: Sequence[str]) -> tuple[Array, Array, 
     wanted = ["time", *joint_names]
     for name in wanted:
         if name not in header:
-            guess = nearest(name, header)
             raise RecordingError(
                 f"no column '{name}'",
-                remedy=(f"Did you mean '{guess}'? " if guess else "")
-                + f"Columns found: {', '.join(header) or 'none'}",
+                remedy=suggestion(name, header, "Columns found"),
                 file=file,
                 line=table[0][0] if table else 1,
             )

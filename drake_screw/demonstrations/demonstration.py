@@ -76,16 +76,17 @@ def demonstration_from_recording(
         recording: to learn from. A region-of-interest factor of its own overrides the
             configuration's, and objects of the task that it names override `task_objects`.
         arm: that was led.
-        config: how the path is cut: as published (see `segmentation`; the default), or faithfully
-            (see `faithful`).
+        config: how the path is cut: faithfully (see `faithful`; the default), or as published (see
+            `segmentation`).
         names: of the k objects; "object 1" and so on if None.
-        task_objects: names of the objects that the hand works on; found by distance where empty.
+        task_objects: names of the objects that the end effector works on; found by distance where
+            empty.
 
     Raises:
         NoMotionKept: faithful segmentation keeps no motion of it, and says why.
         RecordingError: an object of the task has a name that no object has.
     """
-    config = config or SegmentationConfig()
+    config = config or FaithfulConfig()
     return demonstration_of(
         what_is_shown(recording, arm, config, names=names, task_objects=task_objects)
     )
@@ -119,6 +120,7 @@ def demonstration_of(shown: Shown) -> Demonstration:
 
 def _bystanders(regions: Regions, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(
-        f"the {names[i]}, {regions.smallest[i]:.2f} m from the hand at the nearest, is a bystander"
+        f"the {names[i]}, {regions.smallest[i]:.2f} m from the end effector at the nearest, "
+        "is a bystander"
         for i in np.flatnonzero(~regions.task).tolist()
     )

@@ -64,7 +64,7 @@ def deviations_from_screws(
     tolerances, decides, then the sum of squares.
 
     Args:
-        X_WE: (m, 4, 4) hand poses as recorded.
+        X_WE: (m, 4, 4) end-effector poses as recorded.
         X_WO: (k, 4, 4) object poses.
         X_OE: (g, 4, 4) guiding poses, however they were found, each in its object's frame.
         objects: (g,) index of that object.

@@ -37,8 +37,9 @@ class FaithfulConfig:
         position_tolerance: m, largest distance of a sample from the screws.
         rotation_tolerance: rad, largest angle of a sample from them, at the same place of the
             screw.
-        region_of_interest: times the smallest hand-object distance is near the object.
-        reach: m; an object that the hand does not come within is a bystander.
+        region_of_interest: times the smallest distance of end effector and object is near the
+            object.
+        reach: m; an object that the end effector does not come within is a bystander.
 
     Raises:
         ValueError: thinning would lose poses that are beyond the tolerances, or a tolerance is out
@@ -64,7 +65,7 @@ class FaithfulConfig:
             raise ValueError("region_of_interest must be at least 1")
 
     def regions(self, X_WE: Array, X_WO: Array, named: Sequence[int] | None = None) -> Regions:
-        """The visits of a hand path (m, 4, 4) to objects at X_WO (k, 4, 4); `named` if known."""
+        """The visits of a path X_WE (m, 4, 4) to objects at X_WO (k, 4, 4); `named` if known."""
         return regions_of_interest(
             X_WE,
             X_WO,
@@ -80,8 +81,8 @@ def faithful_segments(X_WE: Array, config: FaithfulConfig) -> NDArray[np.int64]:
 
     As few as there can be, if the path is cut at thinned poses only, so that each of the m poses is
     within both tolerances of the screws at one and the same parameter, in the order shown (see
-    `screw_fit`). The first and the last pose are among them, unless the hand stands still: then
-    the first is the only one. Turning the path of poses back to front gives as many.
+    `screw_fit`). The first and the last pose are among them, unless the end effector stands still:
+    then the first is the only one. Turning the path of poses back to front gives as many.
 
     A turn in place of 1.5 rad between two straight lines, and half a minute of standing still:
 
@@ -155,7 +156,7 @@ def faithful_guiding_poses(
     t: Array | None = None,
     named: Sequence[int] | None = None,
 ) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
-    """Guiding poses of a recorded hand path, each in the frame of the object it belongs to.
+    """Guiding poses of a recorded end-effector path, each in the frame of the object it belongs to.
 
     Each visit to an object of the task (see `regions_of_interest`) has guiding poses of its own,
     from its first sample to its last. They are recorded poses, and the promise of
@@ -166,18 +167,18 @@ def faithful_guiding_poses(
     half of the samples of a visit are off by `SCATTER` of a tolerance (1 mm by default): if the
     smoothed motion needs fewer screws, it has as many as that, through poses of the latter, and
     these keep as near to the samples as so many can, within the tolerances or beyond. `fidelity`
-    tells which.
+    says which.
 
     Args:
-        X_WE: (m, 4, 4) hand poses over time.
+        X_WE: (m, 4, 4) end-effector poses over time.
         X_WO: (k, 4, 4) object poses.
         config: tolerances.
         t: (m,) s.
         named: indices of the objects of the task, if they are known.
 
     Returns:
-        X_OE (g, 4, 4); the object's index (g,); the index (g,) into the path. All empty if the hand
-        comes near no object of the task.
+        X_OE (g, 4, 4); the object's index (g,); the index (g,) into the path. All empty if the end
+        effector comes near no object of the task.
     """
     visits = config.regions(X_WE, X_WO, named).visits
     X_smoothed = X_WE if t is None else smoothed(X_WE, t)

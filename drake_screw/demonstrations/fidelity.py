@@ -34,7 +34,7 @@ class Fidelity:
             poses, each sample held against one point of a screw, in the order shown; infinite where
             no sample is kept.
         time: share of the recording's time in which the samples kept were recorded.
-        turn_shown: rad, how much the hand turned near the object (see `turn`).
+        turn_shown: rad, how much the end effector turned near the object (see `turn`).
         turn_kept: rad, how much it turns on the screws.
     """
 
@@ -74,7 +74,7 @@ def fidelity(
     them are kept, and how far from the screws each is, `deviations_from_screws` says.
 
     Args:
-        X_WE: (m, 4, 4) hand poses as recorded.
+        X_WE: (m, 4, 4) end-effector poses as recorded.
         t: (m,) s.
         X_WO: (k, 4, 4) object poses.
         X_OE: (g, 4, 4) guiding poses, however they were found, each in its object's frame.
@@ -126,11 +126,11 @@ def turn(X_WE: Array, least: float) -> float:
     The sum of the angles from one turning point to the next: the first pose is one, and so is each
     pose at which the path is farthest, by angle, from the turning point before, if afterwards it
     turns away from there by more than `least`; the way to the farthest pose after the last of them
-    is added. So trembling and swaying by less do not count. About one axis it is the total
+    is added. So trembling and oscillating by less do not count. About one axis it is the total
     variation of the angle, beyond pi as well.
 
-    `fidelity` takes twice the tolerance for `least`: from swaying by less, a path within the
-    tolerance need not sway.
+    `fidelity` takes twice the tolerance for `least`: from oscillating by less, a path within the
+    tolerance need not oscillate.
 
     Args:
         X_WE: (m, 4, 4).

@@ -30,7 +30,7 @@ def read_recording(
     Args:
         folder: holds joint_angles.csv, object_poses.csv (a 4x4 matrix X_WO per object, stacked)
             and perhaps region_of_interest.txt (a factor) and task_objects.txt (a line for the name
-            of each object that the hand works on).
+            of each object that the end effector works on).
         joint_names: the arm's n joints.
         lower, upper: (n,) limits, rad or m.
         objects: how many object poses there must be; any number if None.

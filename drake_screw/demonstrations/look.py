@@ -60,8 +60,8 @@ class Look:
     """A recording, and what becomes of it.
 
     Attributes:
-        shown: the recording, its names of objects, and where the hand is near which.
-        X_WE: (m, 4, 4) the hand's path, and
+        shown: the recording, its names of objects, and where the end effector is near which.
+        X_WE: (m, 4, 4) the end effector's path, and
         X_WO: (k, 4, 4) the objects, for the arm that is planned for.
         lower, upper: (n,) rad or m, joint limits of the arm that was led.
         units: n units of its joints, "rad" or "m".
@@ -107,7 +107,7 @@ class Look:
 
     @cached_property
     def distance(self) -> Array:
-        """(m, k) m, of the hand from each object."""
+        """(m, k) m, of the end effector from each object."""
         return translation_distance(self.X_WE[:, None], self.X_WO[None])
 
     @cached_property

@@ -56,15 +56,15 @@ class VisitSummary:
 
 @dataclass(frozen=True)
 class ObjectSummary:
-    """An object, and how near the hand came.
+    """An object, and how near the end effector came.
 
     Attributes:
         name: of the object.
         task: whether it belongs to the task.
-        distance: m, the hand's smallest.
+        distance: m, the end effector's smallest.
         at: s, when that was.
         radius: m, within which of it the region of interest lies.
-        visits: of the hand to that region; none to a bystander.
+        visits: of the end effector to that region; none to a bystander.
     """
 
     name: str
@@ -75,7 +75,7 @@ class ObjectSummary:
     visits: tuple[VisitSummary, ...]
 
     def __str__(self) -> str:
-        nearest = f"{self.distance:.3f} m from the hand at the nearest, at {self.at:.2f} s"
+        nearest = f"{self.distance:.3f} m from the end effector at the nearest, at {self.at:.2f} s"
         if not self.task:
             return f"{nearest}; a bystander"
         visits = " and ".join(f"{v.start:.2f} to {v.end:.2f} s" for v in self.visits if v.counts)

@@ -31,7 +31,7 @@ class Recording:
             has its own.
         notes: what the importer changed, human-readable.
         source: folder it was read from.
-        task_objects: names of the objects that the hand works on, if the recording says so.
+        task_objects: names of the objects that the end effector works on, if the recording says so.
         robot: model of the robot it was made on; None for the arm that is planned for.
     """
 

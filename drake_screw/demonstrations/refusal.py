@@ -17,17 +17,18 @@ from drake_screw.screws import rotation_angle, translation_distance
 from drake_screw.typing import Array
 
 LEAST_SHARE = 0.05
-"""Of the hand's travel and turn within reach of the objects: less of both is next to nothing."""
+"""Of the end effector's travel and turn within reach of the objects; less of both is next to
+nothing."""
 
-Reason = Literal["far", "at the hand", "small region"]
+Reason = Literal["far", "at the end effector", "small region"]
 
 
 class NoMotionKept(RecordingError):
     """A recording of which no motion near an object of the task is kept.
 
     Attributes:
-        reason: no object of the task within reach; an object at the very place of the hand; or a
-            region of interest in which the hand does not move.
+        reason: no object of the task within reach; an object at the very place of the end effector;
+            or a region of interest in which the end effector does not move.
     """
 
     def __init__(
@@ -52,11 +53,11 @@ def require_motion(
     """Refuse a demonstration that keeps no motion.
 
     It keeps some if the guiding poses of one visit differ by more than one of the tolerances, and
-    if between them the hand travels or turns by more than that, and by more than `LEAST_SHARE` of
-    its travel or turn within `config.reach` of the objects of the task.
+    if between them the end effector travels or turns by more than that, and by more than
+    `LEAST_SHARE` of its travel or turn within `config.reach` of the objects of the task.
 
     Args:
-        X_WE: (m, 4, 4) hand poses as recorded.
+        X_WE: (m, 4, 4) end-effector poses as recorded.
         t: (m,) s.
         X_WO: (k, 4, 4) object poses.
         objects, kept: (g,) object of each guiding pose, and its index into X_WE.
@@ -71,7 +72,8 @@ def require_motion(
     if not regions.task.any():
         index = int(np.argmin(regions.smallest))
         raise NoMotionKept(
-            f"no motion is kept: the hand comes no nearer than {regions.smallest[index]:.2f} m to "
+            "no motion is kept: the end effector comes no nearer than "
+            f"{regions.smallest[index]:.2f} m to "
             f"an object ({names[index]}), and what is farther than {config.reach:g} m is a "
             "bystander",
             "far",
@@ -96,14 +98,14 @@ def require_motion(
     lost = (
         f"the region of interest, {config.region_of_interest:g} times the smallest distance of "
         f"{smallest * 1e3:.0f} mm to the {names[index]}, holds {samples} of {len(t)} samples "
-        f"({seconds:.2f} s), in which the hand moves by {travel * 1e3:.0f} mm and turns by "
+        f"({seconds:.2f} s), in which the end effector moves by {travel * 1e3:.0f} mm and turns by "
         f"{turned:.2f} rad; of {shown_travel * 1e3:.0f} mm and {shown_turn:.2f} rad near it"
     )
     if smallest <= config.position_tolerance:
         raise NoMotionKept(
-            f"no motion is kept: the {names[index]} is at the very place of the hand; {lost}",
-            "at the hand",
-            remedy="Check the object's pose: its frame must not be where the hand's frame comes.",
+            f"no motion is kept: the {names[index]} is at the end effector's very place; {lost}",
+            "at the end effector",
+            remedy="Check the object's pose: its frame must not be where the end effector comes.",
             file=file,
         )
     raise NoMotionKept(

@@ -1,4 +1,4 @@
-"""Where a recorded hand is near an object of the task, and which one: decided sample by sample."""
+"""Where a recorded path is near an object of the task, and which one: decided sample by sample."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Visit:
 
 @dataclass(frozen=True)
 class Regions:
-    """Where the hand was near which object.
+    """Where the end effector was near which object.
 
     Attributes:
-        smallest: (k,) m, the smallest distance of each object to the hand.
+        smallest: (k,) m, the smallest distance of each object to the end effector.
         task: (k,) bool, which objects belong to the task; the others are bystanders.
         visits: in the order of time, those that are kept.
         left_out: the others.
@@ -54,24 +54,24 @@ def regions_of_interest(
     slack: float,
     named: Sequence[int] | None = None,
 ) -> Regions:
-    """The visits of a hand to the objects of a task.
+    """The visits of an end effector to the objects of a task.
 
-    An object belongs to the task if it is named or, where none is named, if the hand comes within
-    `reach` of it. Each sample belongs to the object of the task that is nearest in metres, and is
-    in its region of interest within `factor` times the object's smallest distance. A visit is an
-    unbroken run of such samples. So that trembling breaks no run, the nearest object changes only
-    once another is nearer by more than `slack`, and a run ends only where the hand leaves the
-    region by more than `slack`; a visit starts and stops inside the region.
+    An object belongs to the task if it is named or, where none is named, if the end effector comes
+    within `reach` of it. Each sample belongs to the object of the task that is nearest in metres,
+    and is in its region of interest within `factor` times the object's smallest distance. A visit
+    is an unbroken run of such samples. So that trembling breaks no run, the nearest object changes
+    only once another is nearer by more than `slack`, and a run ends only where the end effector
+    leaves the region by more than `slack`; a visit starts and stops inside the region.
 
-    Where the hand comes back to an object without visiting another between, the first visit that
-    comes as near as any of these (to within `slack`) is kept, and the others are left out: a screw
-    that joined two of them would lead from the region's edge to its edge, perhaps through the
-    object, as nobody has shown. For a recording of one object that is, unless the hand only grazes
-    the region first, the first run, as in Mahalingam and Chakraborty (ICRA 2023). After a visit to
-    another object the hand comes back from there, and the visit is kept.
+    Where the end effector comes back to an object without visiting another between, the first visit
+    that comes as near as any of these (to within `slack`) is kept, and the others are left out: a
+    screw that joined two of them would lead from the region's edge to its edge, perhaps through the
+    object, as nobody has shown. For a recording of one object that is, unless the end effector only
+    grazes the region first, the first run, as in Mahalingam and Chakraborty (ICRA 2023). After a
+    visit to another object the end effector comes back from there, and the visit is kept.
 
     Args:
-        X_WE: (m, 4, 4) hand poses.
+        X_WE: (m, 4, 4) end-effector poses.
         X_WO: (k, 4, 4) object poses.
         factor: on the smallest distance, at least 1.
         reach: m.

@@ -1,4 +1,4 @@
-"""What a recording shows: the hand's path, and where it is near which object."""
+"""What a recording shows: the end effector's path, and where it is near which object."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ class Shown:
     Attributes:
         recording: it.
         names: of its k objects.
-        X_WE: (m, 4, 4) the hand's path.
+        X_WE: (m, 4, 4) the end effector's path.
         config: how it is to be cut, with the recording's own region of interest if it has one.
         measure: tolerances and regions that its guiding poses are measured by: the configuration
             itself where it is faithful, otherwise the defaults with its region of interest.
         named: indices of the objects of the task, if they are known.
-        regions: where the hand is near which object.
+        regions: where the end effector is near which object.
     """
 
     recording: Recording
@@ -49,7 +49,7 @@ def what_is_shown(
     names: Sequence[str] | None = None,
     task_objects: Sequence[str] = (),
 ) -> Shown:
-    """Forward kinematics of a recording, and the hand's visits to the objects.
+    """Forward kinematics of a recording, and the end effector's visits to the objects.
 
     Args:
         recording: a region-of-interest factor of its own overrides the configuration's, and objects
@@ -57,7 +57,8 @@ def what_is_shown(
         arm: that was led.
         config: how the path is to be cut.
         names: of the k objects; "object 1" and so on if None.
-        task_objects: names of the objects that the hand works on; found by distance where empty.
+        task_objects: names of the objects that the end effector works on; found by distance where
+            empty.
 
     Raises:
         RecordingError: an object of the task has a name that no object has.

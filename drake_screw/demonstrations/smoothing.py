@@ -1,4 +1,4 @@
-"""The motion of a hand apart from the scatter of its samples."""
+"""The motion of an end effector apart from the scatter of its samples."""
 
 from __future__ import annotations
 

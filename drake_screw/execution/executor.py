@@ -37,7 +37,7 @@ class Control:
 
     Attributes:
         period: s, between control steps.
-        pose_gain: 1/s, at which the hand returns to its set point.
+        pose_gain: 1/s, at which the end effector returns to its set point.
         centering_gain: 1/s, at which the joints return to the planned path.
     """
 
@@ -64,12 +64,12 @@ class _Memory:
 
 
 class ScrewPlanExecutor(LeafSystem):
-    """Leads an arm's hand along the constant screws of a plan.
+    """Leads an arm's end effector along the constant screws of a plan.
 
     Every control period it takes the set point of the current segment, a pose on the constant
     screw under the plan's time law and the screw's twist, and turns it into joint velocities by
     Drake's differential inverse kinematics, within the joints' position and velocity limits. The
-    motion that the hand leaves free is drawn to the planned joint path. The velocities are
+    motion that the end effector leaves free is drawn to the planned joint path. The velocities are
     integrated: the arm's own position control follows them, and the measured state serves to
     notice that it does not.
 
@@ -80,9 +80,9 @@ class ScrewPlanExecutor(LeafSystem):
     Output ports:
         desired_state: (2n,) q and v for the arm's position control. Between control steps q
             advances at v. It holds still when nothing runs, after a blockage where the arm is.
-        status: abstract, `ExecutionStatus`: idle; running; done, once the measured hand is at the
-            last guiding pose; failed, with segment and reason. It stays so until another plan
-            comes.
+        status: abstract, `ExecutionStatus`: idle; running; done, once the measured end effector is
+            at the last guiding pose; failed, with segment and reason. It stays so until another
+            plan comes.
         progress: (1,) part of the plan's time that is over, 0 to 1.
 
     Args:

@@ -24,8 +24,8 @@ class JointPathSource(LeafSystem):
     Output ports:
         desired_state: (2n,) q and v of the joint path; without a plan, the middle of the joints'
             ranges at rest.
-        status: abstract, `ExecutionStatus`; whether the hand arrives is known after the plan's
-            time only.
+        status: abstract, `ExecutionStatus`; whether the end effector arrives is known after the
+            plan's time only.
         progress: (1,) part of the plan's time that is over, 0 to 1.
 
     Args:

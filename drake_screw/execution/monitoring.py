@@ -19,10 +19,10 @@ class Tolerances:
 
     Attributes:
         start: rad, of every joint from the plan's first configuration.
-        position, rotation: m and rad, of the commanded hand from its set point.
+        position, rotation: m and rad, of the commanded end effector from its set point.
         lag: rad, of a measured joint from its desired position.
         patience: s, that such a lag may last.
-        final_position, final_rotation: m and rad, of the measured hand at the end.
+        final_position, final_rotation: m and rad, of the measured end effector at the end.
         settling: s, that it may take to get there after the plan's time.
     """
 
@@ -94,7 +94,7 @@ def apart(X_WA: Array, X_WB: Array) -> tuple[float, float]:
 def arrival(
     plan: TimedPlan, t: float, X_WE: Array, tolerances: Tolerances
 ) -> ExecutionStatus | None:
-    """How a plan ended, at time t with the measured hand at X_WE (4, 4); None if it has not."""
+    """How a plan ended, at time t with the end effector measured at X_WE; None if it has not."""
     if t < plan.duration:
         return None
     last = len(plan.segments) - 1
@@ -102,18 +102,19 @@ def arrival(
     if far <= tolerances.final_position and turned <= tolerances.final_rotation:
         return ExecutionStatus(Phase.DONE, last)
     if t > plan.duration + tolerances.settling:
-        return failed(last, f"the hand stays {_words(far, turned)} off the end")
+        return failed(last, f"the end effector stays {_words(far, turned)} off the end")
     return None
 
 
 def out_of_reach(
     segment: int, X_WE: Array, X_WS: Array, tolerances: Tolerances
 ) -> ExecutionStatus | None:
-    """A failure if the commanded hand at X_WE cannot keep up with its set point X_WS (4, 4)."""
+    """A failure if the commanded pose X_WE (4, 4) cannot keep up with its set point X_WS."""
     far, turned = apart(X_WE, X_WS)
     if far <= tolerances.position and turned <= tolerances.rotation:
         return None
-    reason = f"the set point is out of reach: the hand falls {_words(far, turned)} behind it"
+    behind = _words(far, turned)
+    reason = f"the set point is out of reach: the end effector falls {behind} behind it"
     return failed(segment, reason)
 
 

@@ -28,7 +28,7 @@ def recording_html(
 ) -> str:
     """A self-contained Meshcat page that plays executions, over and over.
 
-    The line is the hand's path: blue where the execution was flawless, red otherwise.
+    The line is the end effector's path: blue where the execution was flawless, red otherwise.
 
     Args:
         executions: each with the poses X_WO (k, 4, 4) of the objects.
@@ -45,7 +45,7 @@ def recording_html(
     animation = meshcat.get_mutable_recording()
     began = 0.0
     for number, (execution, X_WO) in enumerate(executions):
-        path = f"/hand/{number + 1:02d}"
+        path = f"/paths/{number + 1:02d}"
         _trace(
             meshcat,
             path,

@@ -21,7 +21,7 @@ from drake_screw.screws import (
 )
 from drake_screw.typing import Array
 
-EVERY = 4e-3  # s, between samples at which the hand is looked at
+EVERY = 4e-3  # s, between samples at which the end effector is looked at
 
 
 @dataclass(frozen=True)
@@ -59,11 +59,11 @@ class ExecutionReport:
         worst_joint: the joint that had it.
         outside: names of the joints that were outside their limits.
         velocity: greatest joint velocity, over its limit.
-        tracking: of the measured hand from the set point of the same time.
-        screws: of the measured hand from the commanded screw whatever the time, for each segment
-            that was begun.
+        tracking: of the measured end effector from the set point of the same time.
+        screws: of the measured end effector from the commanded screw whatever the time, for each
+            segment that was begun.
         contacts: of the robot with anything, itself included.
-        final: of the measured hand from the last guiding pose, when it ended.
+        final: of the measured end effector from the last guiding pose, when it ended.
     """
 
     status: ExecutionStatus
@@ -146,9 +146,9 @@ def make_report(
 
 
 def _ahead(X_WE: Array, X_WS: Array, twist: Array) -> Array:
-    """How much farther along the screw than S the hand E is (m,), by a step of Gauss-Newton.
+    """How much farther along the screw than S the frame E is (m,), by a step of Gauss-Newton.
 
-    Rotations and translations are weighed by CHARACTERISTIC_LENGTH, at the hand.
+    Rotations and translations are weighed by CHARACTERISTIC_LENGTH, at the end effector.
     """
     V = _at_hand(log(X_WE @ inverse(X_WS)), X_WS)
     along = _at_hand(np.broadcast_to(twist, V.shape), X_WS)

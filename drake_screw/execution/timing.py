@@ -58,7 +58,7 @@ class TimedSegment:
     """One constant-screw segment with its time law, sampled evenly from rest to rest.
 
     Attributes:
-        X_WA, X_WB: (4, 4) where the hand starts and ends.
+        X_WA, X_WB: (4, 4) where the end effector starts and ends.
         period: s between samples.
         s, rate: (m,) fraction of the screw done, and its time derivative in 1/s.
         q, v: (m, n) the planned joint path, rad, and its time derivative.
@@ -79,7 +79,7 @@ class TimedSegment:
 
     @cached_property
     def twist(self) -> Array:
-        """(6,) [w; v] about W's origin: the hand's twist, constant but for the rate."""
+        """(6,) [w; v] about W's origin: the end effector's twist, constant but for the rate."""
         return log(self.X_WB @ inverse(self.X_WA))
 
     def pose(self, s: float) -> Array:

@@ -151,9 +151,9 @@ class TrialSummary:
                 f"with contact               {self.with_contact}",
                 f"least joint margin         {self.worst.joint_margin:.4f} rad",
                 f"greatest joint velocity    {self.worst.velocity:.0%} of its limit",
-                f"hand from its set point    {_at_most(self.worst.tracking)}",
-                f"hand from its screw        {_at_most(self.worst.screws)}",
-                f"hand from the last pose    {_at_most(self.worst.final)}",
+                f"tracking error (set point) {_at_most(self.worst.tracking)}",
+                f"path error (screw)         {_at_most(self.worst.screws)}",
+                f"error at the last pose     {_at_most(self.worst.final)}",
                 f"time                       {least:.1f} to {most:.1f}, mean {mean:.1f} s",
             ]
         return "\n".join([*lines, *(f"  {remark}" for remark in self.flawed)])

@@ -59,7 +59,7 @@ class Hit:
 class PlanChecker:
     """Finds the collisions of plans in a workcell.
 
-    Bounds on clearance (`planning.clearance`) tell which stretches of a path are surely free. On
+    Bounds on clearance (`planning.clearance`) show which stretches of a path are surely free. On
     the rest, `Workcell.collides` is asked about configurations at most SPACING apart, for all
     paths in one parallel call.
 

@@ -13,32 +13,33 @@ ROTATION_TOLERANCE = 1e-3
 """rad. A segment ends at most this far turned from its guiding pose."""
 
 CHARACTERISTIC_LENGTH = 1.0
-"""m. What counts as much as a radian when a hand's twist is given a size."""
+"""m. What counts as much as a radian when an end effector's twist is given a size."""
 
 RATE_LIMIT = 100.0
-"""Joint motion for a unit of hand motion at which a pose is called unreachable.
+"""Joint motion for a unit of end-effector motion at which a pose is called unreachable.
 
-Both are Euclidean norms: of joint rates, and `hand_motion`. It bounds the inverse of the Jacobian's
-least singular value along the motion's twist.
+Both are Euclidean norms: of joint velocities, and `motion_size`. It bounds the inverse of the
+Jacobian's least singular value along the motion's twist.
 """
 
 RESIDUAL_LIMIT = 1e-2
-"""Part of a segment's hand motion that the joints cannot give at which a pose is unreachable.
+"""Part of a segment's end-effector motion that the joints cannot give at which a pose is
+unreachable.
 
 It is what J dq/ds lacks of the twist, times what is left of the segment, in RATE_LIMIT's measure of
-hand motion: at a singularity, or wherever an arm of fewer than six joints is asked for a motion
-that it does not have. Towards the segment's end, where next to nothing is left to move, it is the
-tolerances that count.
+end-effector motion: at a singularity, or wherever an arm of fewer than six joints is asked for a
+motion that it does not have. Towards the segment's end, where next to nothing is left to move, it
+is the tolerances that count.
 """
 
 ORIENTATION_MIN = 1e-14
 """det(J^T J') at two points of a path is negative if it is below minus this, and not by rounding.
 
-With six joints or fewer that tells that the path leads through a singularity in between.
+With six joints or fewer that means that the path leads through a singularity in between.
 """
 
 
-def hand_motion(V_WE: Array) -> Array:
+def motion_size(V_WE: Array) -> Array:
     """Size of spatial velocities: sqrt(turn^2 + (travel / CHARACTERISTIC_LENGTH)^2).
 
     Args:

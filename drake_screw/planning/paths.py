@@ -16,7 +16,7 @@ SPACING = 0.1
 """rad (or m), joint motion, summed up over the joints, between two points of a path at most."""
 
 FEWEST = 4
-"""Parts of a step at least; the points between them tell its polynomial."""
+"""Parts of a step at least; the points between them determine its polynomial."""
 
 
 def joint_paths(

@@ -1,10 +1,10 @@
 """The reference planner: ScLERP and the Jacobian pseudoinverse on the plant, step by step.
 
 It defines the question that the batch planner answers quickly. Along one constant-screw segment
-the hand's spatial twist is constant, so the joint path solves dq/ds = J(q)^+ V for s in [0, 1]
-(Mahalingam and Chakraborty, ICRA 2023). It is followed here by the classical Runge-Kutta method in
-small steps, each aimed at the guiding pose again so that the path ends on it. The contract in words
-is docs/numerical_contract.md.
+the end effector's spatial twist is constant, so the joint path solves dq/ds = J(q)^+ V for s in
+[0, 1] (Mahalingam and Chakraborty, ICRA 2023). It is followed here by the classical Runge-Kutta
+method in small steps, each aimed at the guiding pose again so that the path ends on it. The
+contract in words is docs/numerical_contract.md.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from drake_screw.planning.contract import (
     RATE_LIMIT,
     RESIDUAL_LIMIT,
     ROTATION_TOLERANCE,
-    hand_motion,
+    motion_size,
 )
 from drake_screw.planning.outcomes import Cause, Plan, one_outcome
 from drake_screw.robot.arm import Arm
@@ -33,9 +33,10 @@ class ReferencePlanner:
 
     Args:
         arm: to plan for.
-        step: hand motion in one step, rad and (divided by CHARACTERISTIC_LENGTH) m together.
-        joint_step: rad (or m), joint motion in one step, so that steps shrink where joints race;
-            at least half of `step`.
+        step: end-effector motion in one step, rad and (divided by CHARACTERISTIC_LENGTH) m
+            together.
+        joint_step: rad (or m), joint motion in one step, so that steps shrink near
+            singularities; at least half of `step`.
     """
 
     def __init__(self, arm: Arm, *, step: float = 0.01, joint_step: float = 0.005) -> None:
@@ -82,8 +83,8 @@ class ReferencePlanner:
         size, s = self._twist(q, X_WG)[1], 0.0
         while s < 1.0:
             V = self._twist(q, X_WG)[0] / (1.0 - s)
-            rates, residual = self._rates_and_residual(q, V)
-            rate = float(np.linalg.norm(rates))
+            velocities, residual = self._velocities_and_residual(q, V)
+            rate = float(np.linalg.norm(velocities))
             if rate > RATE_LIMIT * size or residual * (1.0 - s) > RESIDUAL_LIMIT * size:
                 return points, fractions, Cause.UNREACHABLE, -1
             h = min(self.step / max(size, 1e-12), self.joint_step / max(rate, 1e-12), 1.0 - s)
@@ -113,25 +114,25 @@ class ReferencePlanner:
         for _ in range(CORRECTIONS):
             if _near(self.arm.pose(q), X_WG, 0.1):
                 break
-            q = q + self._rates(q, self._twist(q, X_WG)[0])
+            q = q + self._joint_velocities(q, self._twist(q, X_WG)[0])
         return q
 
     def _twist(self, q: Array, X_WG: Array) -> tuple[Array, float]:
-        """The constant twist from here to the goal, and its size as the hand feels it."""
+        """The constant twist from here to the goal, and its size at the end effector."""
         X_WE = self.arm.pose(q)
         V = log(X_WG @ inverse(X_WE))
-        return V, float(hand_motion(shift(V, X_WE[:3, 3])))
+        return V, float(motion_size(shift(V, X_WE[:3, 3])))
 
-    def _rates(self, q: Array, V: Array) -> Array:
-        """J^+ V, the least joint rates that give the hand the twist V (about W's origin)."""
-        return self._rates_and_residual(q, V)[0]
+    def _joint_velocities(self, q: Array, V: Array) -> Array:
+        """J^+ V: the minimum-norm joint velocities of the twist V about W's origin."""
+        return self._velocities_and_residual(q, V)[0]
 
-    def _rates_and_residual(self, q: Array, V: Array) -> tuple[Array, float]:
-        """`_rates`, and the size of what J times them lacks of V, as the hand feels it."""
+    def _velocities_and_residual(self, q: Array, V: Array) -> tuple[Array, float]:
+        """`_joint_velocities`, and the size of the residual V - J dq/ds."""
         X_WE, J_WE = self.arm.pose_and_jacobian(q)
         V_WE = shift(V, X_WE[:3, 3])
-        rates = np.linalg.lstsq(J_WE, V_WE, rcond=None)[0]
-        return rates, float(hand_motion(V_WE - J_WE @ rates))
+        velocities = np.linalg.lstsq(J_WE, V_WE, rcond=None)[0]
+        return velocities, float(motion_size(V_WE - J_WE @ velocities))
 
     def _passes_singularity(self, q: Array, moved: Array) -> bool:
         """Whether J's columns change their orientation, for arms that cannot get around that.
@@ -145,10 +146,10 @@ class ReferencePlanner:
         return bool(np.linalg.det(J.T @ J_moved) < -ORIENTATION_MIN)
 
     def _runge_kutta(self, q: Array, V: Array) -> Array:
-        k1 = self._rates(q, V)
-        k2 = self._rates(q + k1 / 2, V)
-        k3 = self._rates(q + k2 / 2, V)
-        k4 = self._rates(q + k3, V)
+        k1 = self._joint_velocities(q, V)
+        k2 = self._joint_velocities(q + k1 / 2, V)
+        k3 = self._joint_velocities(q + k2 / 2, V)
+        k4 = self._joint_velocities(q + k3, V)
         return q + (k1 + 2 * k2 + 2 * k3 + k4) / 6
 
 

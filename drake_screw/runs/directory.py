@@ -15,7 +15,7 @@ from drake_screw.acquisition import RoundFinished
 from drake_screw.demonstrations import Fidelity, Recording, write_recording
 from drake_screw.demonstrations.library import JOINTS
 from drake_screw.errors import RunDirectoryError
-from drake_screw.files import fresh_folder, write_folder, write_text
+from drake_screw.files import fresh_folder, make_folder, write_folder, write_text, writing
 from drake_screw.runs.codec import json_text, read_run_record, save_evaluation
 from drake_screw.runs.records import (
     DemonstrationRecord,
@@ -27,11 +27,14 @@ from drake_screw.runs.region_table import regions_csv
 
 RUN, SCENARIO, LOG = "run.json", "scenario.yaml", "run.log"
 INSTANCES, DEMONSTRATIONS = "instances.npz", "demonstrations"
+UNWRITABLE_RUN = "Free some space or make the run's folder writable, then carry on with --resume."
 
 
 @dataclass
 class RunDirectory:
     """One run's folder. Files appear whole or not at all: written aside, then renamed.
+
+    Whatever writes raises `RunDirectoryError` where the operating system refuses.
 
     Attributes:
         path: of the folder.
@@ -55,22 +58,10 @@ class RunDirectory:
         """
         path = path or fresh_folder(Path("runs") / record.scenario)
         directory = cls(path, record)
-        try:
-            if path.exists() and (not path.is_dir() or any(path.iterdir())):
-                raise RunDirectoryError(
-                    "exists already; a run never overwrites anything",
-                    remedy="Give another --output, or continue a run with --resume.",
-                    file=path,
-                )
-            path.mkdir(parents=True, exist_ok=True)
+        with writing(path, remedy="Choose a folder you may write to with --output."):
+            make_folder(path, "run")
             write_text(path / SCENARIO, scenario_text)
             directory.save()
-        except OSError as error:
-            raise RunDirectoryError(
-                f"cannot be written: {error.strerror}",
-                remedy="Choose a folder you may write to with --output.",
-                file=path,
-            ) from error
         return directory
 
     @classmethod
@@ -99,12 +90,14 @@ class RunDirectory:
     def save(self, **changes: Any) -> None:
         """Write run.json, with some entries changed."""
         self.record = replace(self.record, **changes)
-        write_text(self.path / RUN, json_text(self.record))
+        with writing(self.path / RUN, UNWRITABLE_RUN):
+            write_text(self.path / RUN, json_text(self.record))
 
     def log(self, text: str) -> None:
         """Append lines to the log, each with the time."""
         stamp = now()
-        with (self.path / LOG).open("a", encoding="utf-8") as log:
+        file = self.path / LOG
+        with writing(file, UNWRITABLE_RUN), file.open("a", encoding="utf-8") as log:
             log.writelines(f"{stamp} {line}\n" for line in text.splitlines())
 
     def add_demonstration(
@@ -124,7 +117,8 @@ class RunDirectory:
             else:
                 write_recording(recording, temporary, held)
 
-        write_folder(folder, fill)
+        with writing(folder, UNWRITABLE_RUN):
+            write_folder(folder, fill)
         entry = DemonstrationRecord.of(
             recording, str(folder.relative_to(self.path)), remark, fidelity
         )
@@ -144,7 +138,9 @@ class RunDirectory:
                 file.write_text(json_text(wanted), encoding="utf-8")
             draw(event, folder / "heat_map")
 
-        write_folder(self.round_folder(event.round), fill)
+        folder = self.round_folder(event.round)
+        with writing(folder, UNWRITABLE_RUN):
+            write_folder(folder, fill)
         self.save(rounds=(*self.record.rounds, RoundRecord.of(event)))
 
     def round_folder(self, round: int) -> Path:

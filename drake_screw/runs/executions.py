@@ -14,11 +14,11 @@ from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
-from drake_screw.files import fresh_folder, write_folder
+from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Cause, Outcomes, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.runs.run import Run, open_run
-from drake_screw.tasks import draw
+from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.lifetime import scratch
 
@@ -120,14 +120,9 @@ def execute(
             (folder / "executions.html").write_text(page)
 
     folder = fresh_folder(opened.directory.path / "executions")
-    try:
+    remedy = "Executions are written beside the run; make its folder writable."
+    with writing(folder, remedy):
         write_folder(folder, fill)
-    except OSError as error:
-        raise RunDirectoryError(
-            f"cannot be written: {error.strerror}",
-            remedy="Executions are written beside the run; make its folder writable.",
-            file=folder,
-        ) from error
     return Executions(folder, found)
 
 
@@ -240,20 +235,9 @@ def _fresh_instances(
     drawn, missing = np.zeros(regions.K, dtype=int), np.full(regions.K, per_region)
     places, outcomes = [], []
     while missing.any():
-        x_y_yaw = np.concatenate(
-            [
-                draw(
-                    regions,
-                    j,
-                    seed=setup.scenario.seed,
-                    round=ROUND,
-                    start=int(drawn[j]),
-                    count=int(missing[j]),
-                )
-                for j in range(regions.K)
-            ]
+        x_y_yaw, region = draw_in_all(
+            regions, missing, seed=setup.scenario.seed, round=ROUND, starts=drawn
         )
-        region = np.repeat(np.arange(regions.K), missing)
         planned = plan(x_y_yaw)
         places.append(x_y_yaw)
         outcomes.append(planned)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from drake_screw.errors import ScenarioError, nearest
+from drake_screw.errors import ScenarioError, suggestion
 from drake_screw.files import csv_text
 from drake_screw.planning import Outcomes
 from drake_screw.tasks import AXES, WorkArea
@@ -45,11 +45,9 @@ def read_instances(file: Path, area: WorkArea) -> Array:
             if name in header:
                 columns[header.index(name)] = (i, j)
             elif axis != "yaw":
-                guess = nearest(name, header)
                 raise ScenarioError(
                     f"no column '{name}'",
-                    remedy=(f"Did you mean '{guess}'? " if guess else "")
-                    + f"Columns found: {', '.join(header) or 'none'}",
+                    remedy=suggestion(name, header, "Columns found"),
                     file=file,
                     line=1,
                 )

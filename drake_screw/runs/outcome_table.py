@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from drake_screw.assembly.setup import Setup
-from drake_screw.errors import RunDirectoryError
-from drake_screw.files import write_text
+from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
 from drake_screw.runs.instance_tables import outcomes_csv, read_instances
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
@@ -65,14 +64,8 @@ def tabulate_outcomes(
     outcomes = setup.evaluate(learned, x_y_yaw)
     seconds = time.perf_counter() - began
     text = outcomes_csv(x_y_yaw, outcomes, [d.name for d in learned], setup.area)
-    try:
+    with writing(output, WRITABLE_OUTPUT):
         write_text(output, text)
-    except OSError as error:
-        raise RunDirectoryError(
-            f"cannot be written: {error.strerror}",
-            remedy="Give an --output in a folder that exists and that you may write to.",
-            file=output,
-        ) from error
     rates = outcomes.success.mean(axis=0).tolist()
     return OutcomeTable(
         output=output,

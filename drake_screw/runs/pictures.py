@@ -9,6 +9,8 @@ from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.assembly.setup import Setup
+from drake_screw.files import writing
+from drake_screw.runs.directory import UNWRITABLE_RUN
 from drake_screw.visualization import Scene, save_heat_map, save_run_figure
 from drake_screw.visualization.lifetime import scratch
 
@@ -22,14 +24,19 @@ def draw_round(setup: Setup, event: RoundFinished, stem: Path) -> None:
 
 
 def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> None:
-    """Draw a whole run into a folder: rounds.png, rounds.svg and meshcat.html."""
+    """Draw a whole run into a folder: rounds.png, rounds.svg and meshcat.html.
+
+    Raises:
+        RunDirectoryError: they cannot be written.
+    """
     if not rounds:
         return
     name, regions = setup.scenario.name, [event.regions for event in rounds]
     stem = folder / PICTURE.removesuffix(".png")
-    save_run_figure(rounds, regions, stem, scenario=name, beta=setup.goal.beta)
-    with scratch():
-        _save_scene(setup, rounds, folder / "meshcat.html")
+    with writing(folder, UNWRITABLE_RUN):
+        save_run_figure(rounds, regions, stem, scenario=name, beta=setup.goal.beta)
+        with scratch():
+            _save_scene(setup, rounds, folder / "meshcat.html")
 
 
 def _save_scene(setup: Setup, rounds: Sequence[RoundFinished], file: Path) -> None:

@@ -27,7 +27,7 @@ from drake_screw.runs.pictures import PICTURE, draw_round, draw_run
 from drake_screw.runs.reader import RunReader
 from drake_screw.runs.records import RunRecord
 from drake_screw.runs.resuming import carry_on
-from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
 
@@ -210,7 +210,7 @@ def open_run(path: PathLike, **parts: Unpack[Parts]) -> Run:
     path = Path(path)
     directory = RunDirectory.open(path)
     try:
-        setup = Setup(load_scenario(path / SCENARIO), **parts)
+        setup = Setup(load_stored_scenario(path / SCENARIO), **parts)
     except ScenarioError as error:
         missing = not (path / SCENARIO).is_file()
         raise RunDirectoryError(

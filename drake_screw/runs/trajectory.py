@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
-from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.errors import ScenarioError
 from drake_screw.execution import time_plan
-from drake_screw.files import write_bytes
+from drake_screw.files import WRITABLE_OUTPUT, write_bytes, writing
 from drake_screw.plugins import find, names
 from drake_screw.robot import Arm
 from drake_screw.runs.executions import (
@@ -91,14 +91,8 @@ def write_trajectory(
     plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start)
     timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), chosen.transfer(X_WO)]), arm)
     output = Path(output)
-    try:
+    with writing(output, WRITABLE_OUTPUT):
         write_bytes(output, writer(timed, arm))
-    except OSError as error:
-        raise RunDirectoryError(
-            f"cannot be written: {error.strerror}",
-            remedy="Give an --output in a folder that exists and that you may write to.",
-            file=output,
-        ) from error
     return Trajectory(
         output=output,
         format=format,

@@ -32,7 +32,7 @@ _IN_WORDS = {
 
 @cache
 def json_schema() -> Schema:
-    """The schema, in which ``unit`` and ``description`` tell of a key; not to be changed."""
+    """The schema, in which ``unit`` and ``description`` describe a key; not to be changed."""
     return Scenario.model_json_schema(schema_generator=_Generator)
 
 

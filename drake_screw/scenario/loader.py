@@ -26,6 +26,9 @@ from drake_screw.scenario.yaml_marks import (
 )
 from drake_screw.typing import PathLike
 
+_BEFORE_IT_WAS_WRITTEN = {("segmentation", "method"): "published"}
+"""What earlier versions did that had no such key."""
+
 
 def load_scenario(name_or_path: PathLike, overrides: Sequence[str] = ()) -> Scenario:
     """Reads a scenario file, fills in defaults and makes its paths absolute.
@@ -57,6 +60,26 @@ def load_scenario(name_or_path: PathLike, overrides: Sequence[str] = ()) -> Scen
         return Scenario.model_validate(data).read_from(file)
     except ValidationError as error:
         raise _error(problems_of(error, data), tree, file) from None
+
+
+def load_stored_scenario(file: PathLike) -> Scenario:
+    """Reads a scenario that `dump_scenario` wrote, perhaps in an earlier version.
+
+    Every key is written out there. One that is missing did not exist yet, and stands for what that
+    version did, whatever the default has become.
+
+    Raises:
+        ScenarioError: as `load_scenario`.
+    """
+    path = find_resource("scenarios", file, SCENARIO_SUFFIXES)
+    tree = parse(_read(path), Place(path))
+    written = plain(tree) if isinstance(tree, Entries) else {}
+    overrides = []
+    for (block, key), meaning in _BEFORE_IT_WAS_WRITTEN.items():
+        found = written.get(block)
+        if isinstance(found, dict) and key not in found:
+            overrides.append(f"{block}.{key}={meaning}")
+    return load_scenario(path, overrides)
 
 
 def dump_scenario(scenario: Scenario) -> str:

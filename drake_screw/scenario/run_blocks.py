@@ -23,7 +23,7 @@ from drake_screw.scenario.values import (
 
 class AdaptiveBlock(Block):
     smallest: Annotated[float, Field(ge=1e-9, lt=1)] = 1 / 256
-    """share of the work area that the smallest cells told apart take up"""
+    """share of the work area that the smallest cells distinguished take up"""
     level: Probability = 0.5
     """failure probability that a cell of that size may have without being noticed"""
 
@@ -65,7 +65,7 @@ class CoverageBlock(Block):
             yield Problem(
                 ("epsilon",),
                 f"the run could never stop: epsilon = {self.epsilon:g} is not below "
-                f"1 - beta = {slack:g}, so no measurement could tell that a region is good enough",
+                f"1 - beta = {slack:g}, so no measurement could show that a region is good enough",
                 f"Choose an epsilon below {slack:g}, or a smaller beta.",
             )
 
@@ -80,7 +80,8 @@ class DemonstrationsBlock(Block):
     budget: Annotated[int, Field(ge=1)] = 12
     """most demonstrations in total, the initial ones included"""
     objects: tuple[str, ...] = ()
-    """names of the objects that the hand works on; where left out, those that it comes near"""
+    """names of the objects that the end effector works on; those that it comes near where left
+    out"""
 
     @property
     def initial_count(self) -> int:

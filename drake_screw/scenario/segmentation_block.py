@@ -46,7 +46,7 @@ Method = Annotated[
 
 
 class SegmentationBlock(Block):
-    method: Method = PUBLISHED
+    method: Method = FAITHFUL
     """faithful: the fewest screws that keep every sample near an object; published: Mahalingam and
     Chakraborty's, as in the paper"""
     spacing: Annotated[Positive | None, METRES] = None
@@ -55,17 +55,18 @@ class SegmentationBlock(Block):
     turn_spacing: Annotated[Positive | None, Field(json_schema_extra={"unit": "rad"})] = None
     """faithful: or the smallest turn between them; 0.03"""
     position_tolerance: Annotated[Positive | None, METRES] = None
-    """largest distance of the recorded hand from the screws; 0.01 where faithful, 0.015 where
-    published"""
+    """largest distance of the recorded end effector from the screws; 0.01 where faithful, 0.015
+    where published"""
     rotation_tolerance: Positive | None = None
-    """faithful: largest angle of the recorded hand from the screws, in rad; 0.1. published: largest
-    chordal quaternion distance; 0.15"""
+    """faithful: largest angle of the recorded end effector from the screws, in rad; 0.1. published:
+    largest chordal quaternion distance; 0.15"""
     min_progress: Positive | None = None
     """published: smallest advance of the screw parameter between successive poses; 0.001"""
     region_of_interest: Annotated[float, Field(ge=1)] | None = None
-    """guiding poses lie within this many times the smallest distance of hand and object; 1.5"""
+    """guiding poses lie within this many times the smallest distance of end effector and object;
+    1.5"""
     reach: Annotated[Positive | None, METRES] = None
-    """faithful: an object that the hand does not come within is a bystander, unless
+    """faithful: an object that the end effector does not come within is a bystander, unless
     `demonstrations.objects` names it; 0.35"""
 
     @model_validator(mode="before")
@@ -74,7 +75,7 @@ class SegmentationBlock(Block):
         data = {} if data is None else data
         if not isinstance(data, dict):
             return data
-        defaults = DEFAULTS.get(str(data.get("method", PUBLISHED)), {})
+        defaults = DEFAULTS.get(str(data.get("method", FAITHFUL)), {})
         return {**defaults, **{name: value for name, value in data.items() if value is not None}}
 
     @property
@@ -90,7 +91,7 @@ class SegmentationBlock(Block):
                 yield Problem(
                     (name,),
                     f"the method {self.method} has no such key",
-                    f"Write `method: {foreign}`, or leave it out.",
+                    f"Leave it out, or write `method: {foreign}`.",
                 )
         try:
             _ = self.config

@@ -25,7 +25,7 @@ class RobotBlock(Block):
     model: ModelName
     """shipped model's name, or the path of a model file, relative to the scenario file"""
     joints: tuple[str, ...]
-    """names of the arm's joints, from base to hand"""
+    """names of the arm's joints, from base to end effector"""
     end_effector: str
     """name of the frame that the demonstrations move"""
     start: Annotated[tuple[float, ...], RADIANS]
@@ -49,7 +49,8 @@ class RecordedOnBlock(Block):
     model: ModelName
     """shipped model's name, or the path of a model file, relative to the scenario file"""
     joints: tuple[str, ...]
-    """names of that arm's joints, from base to hand; the recordings have a column for each"""
+    """names of that arm's joints, from base to end effector; the recordings have a column for
+    each"""
     end_effector: str
     """name of that arm's frame which `robot.end_effector` stands for: same axes, same grip"""
     base: str = "base"

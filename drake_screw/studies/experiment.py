@@ -28,23 +28,23 @@ from drake_screw.tasks import AXES, GridRegions, WorkArea, grid_regions
 def split(area: WorkArea, K: int) -> GridRegions:
     """A grid of K equal regions, as square as it goes: 1 x 1, 1 x 2, 2 x 2, 2 x 4, 4 x 4, ...
 
-    The prime factors of K, the largest first, go in turn to the axes that have room: those in
+    The prime factors of K, the largest first, go in turn to the axes that can be split: those in
     metres before the yaws, the longest first.
 
     Raises:
-        ScenarioError: K is not positive, or no axis has room to be split.
+        ScenarioError: K is not positive, or no axis can be split.
     """
-    room = area.upper - area.lower
+    extent = area.upper - area.lower
     axes = sorted(
-        zip(*np.nonzero(room > 0.0), strict=True),
-        key=lambda axis: (AXES[axis[1]] == "yaw", -room[axis]),
+        zip(*np.nonzero(extent > 0.0), strict=True),
+        key=lambda axis: (AXES[axis[1]] == "yaw", -extent[axis]),
     )
     if K < 1 or (K > 1 and not axes):
         raise ScenarioError(
             f"the work area cannot be split into {K} regions",
-            remedy="Give positive numbers of regions, and objects that have room to move.",
+            remedy="Give positive numbers of regions, and objects that may move.",
         )
-    counts = np.ones_like(room, dtype=np.int64)
+    counts = np.ones_like(extent, dtype=np.int64)
     for i, factor in enumerate(_prime_factors(K)):
         counts[axes[i % len(axes)]] *= factor
     named = {

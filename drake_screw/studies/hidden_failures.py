@@ -14,7 +14,7 @@ from drake_screw.bandits.mixture import confidence_interval
 from drake_screw.demonstrations import Demonstration
 from drake_screw.studies.experiment import Experiment, StudyRun, run_seed, split
 from drake_screw.studies.figures import save_comparison
-from drake_screw.tasks import GridRegions, draw
+from drake_screw.tasks import GridRegions, draw_in_all
 
 MOST_RUNS = 20
 EACH = 1024
@@ -106,8 +106,7 @@ def evenly(
     It certifies what those show by the e-processes of `bandits.mixture`.
     """
     setup, K = experiment.setup, regions.K
-    places = [draw(regions, j, seed=seed, round=0, start=0, count=EACH) for j in range(K)]
-    x_y_yaw, region = np.concatenate(places), np.repeat(np.arange(K), EACH)
+    x_y_yaw, region = draw_in_all(regions, EACH, seed=seed, round=0)
     outcomes = setup.planner.any_success(
         demonstrations, setup.area.X_WO(x_y_yaw), setup.workcell.start
     )

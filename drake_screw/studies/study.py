@@ -10,20 +10,24 @@ were shared out.
 from __future__ import annotations
 
 import json
-import platform
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
 from functools import cached_property, partial
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.files import csv_text, file_hash, fresh_folder, write_text
+from drake_screw.files import (
+    csv_text,
+    file_hash,
+    fresh_folder,
+    make_folder,
+    write_text,
+    writing,
+)
 from drake_screw.processes import WorkerLost, share_out
-from drake_screw.runs.directory import SCENARIO
-from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.runs.directory import SCENARIO, now, versions
+from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.studies.experiment import Experiment, StudyRun, split
 from drake_screw.studies.figures import Distribution, save_distributions
@@ -34,6 +38,7 @@ from drake_screw.typing import PathLike
 FORMAT = 1
 STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"
 FINISHED = "finished"
+_UNWRITABLE = "Free some space or make the study's folder writable, then carry on with --resume."
 
 
 @dataclass(frozen=True)
@@ -83,19 +88,21 @@ class Study:
             Each run as it is finished.
 
         Raises:
-            RunDirectoryError: the table is damaged, or a process was killed.
+            RunDirectoryError: the table is damaged or cannot be written, or a process was killed.
         """
         finished = self.finished_runs()
         table = self.path / RUNS
-        write_text(table, csv_text([HEADER, *map(row, finished)]))
+        with writing(table, _UNWRITABLE):
+            write_text(table, csv_text([HEADER, *map(row, finished)]))
         done = {(run.K, run.run) for run in finished}
         missing = [(K, i) for i in range(self.runs) for K in self.regions if (K, i) not in done]
         self._save("running")
         try:
             with table.open("a") as lines:
                 for run in self._results(missing, workers):
-                    lines.write(csv_text([row(run)]))
-                    lines.flush()
+                    with writing(table, _UNWRITABLE):
+                        lines.write(csv_text([row(run)]))
+                        lines.flush()
                     yield run
             self._conclude()
         except BaseException:
@@ -138,17 +145,19 @@ class Study:
 
     def _conclude(self) -> None:
         runs, summary = self.finished_runs(), self.summary()
-        write_text(self.path / RUNS, csv_text([HEADER, *map(row, runs)]))
-        write_text(self.path / SUMMARY, summary_csv(summary))
         name = self.scenario.name
-        save_distributions(summary, self.path / "distributions", scenario=name)
-        draw_hidden_failure(self.experiment, runs, self.path / "hidden_pocket")
+        with writing(self.path, _UNWRITABLE):
+            write_text(self.path / RUNS, csv_text([HEADER, *map(row, runs)]))
+            write_text(self.path / SUMMARY, summary_csv(summary))
+            save_distributions(summary, self.path / "distributions", scenario=name)
+            draw_hidden_failure(self.experiment, runs, self.path / "hidden_pocket")
         self._save(FINISHED)
 
     def _save(self, status: str) -> None:
         self.record["status"] = status
-        self.record["finished"] = _now() if status == FINISHED else None
-        write_text(self.path / STUDY, json.dumps(self.record, indent=2) + "\n")
+        self.record["finished"] = now() if status == FINISHED else None
+        with writing(self.path / STUDY, _UNWRITABLE):
+            write_text(self.path / STUDY, json.dumps(self.record, indent=2) + "\n")
 
 
 def new_study(
@@ -193,31 +202,16 @@ def new_study(
         "strategy": scenario.coverage.strategy,
         "model": str(model),
         "hashes": {"model": file_hash(model)},
-        "versions": {
-            "python": platform.python_version(),
-            **{p: version(p) for p in ("drake-screw", "drake", "numpy", "scipy", "numba")},
-        },
-        "started": _now(),
+        "versions": versions(),
+        "started": now(),
         "finished": None,
     }
-    try:
-        if path.exists() and (not path.is_dir() or any(path.iterdir())):
-            raise RunDirectoryError(
-                "exists already; a study never overwrites anything",
-                remedy="Give another --output, or continue a study with --resume.",
-                file=path,
-            )
-        path.mkdir(parents=True, exist_ok=True)
+    with writing(path, remedy="Choose a folder you may write to with --output."):
+        make_folder(path, "study")
         write_text(path / SCENARIO, dump_scenario(scenario))
         write_text(path / RUNS, csv_text([HEADER]))
         write_text(path / STUDY, json.dumps(record, indent=2) + "\n")
-    except OSError as error:
-        raise RunDirectoryError(
-            f"cannot be written: {error.strerror}",
-            remedy="Choose a folder you may write to with --output.",
-            file=path,
-        ) from error
-    return Study(path, load_scenario(path / SCENARIO), record)
+    return Study(path, load_stored_scenario(path / SCENARIO), record)
 
 
 def open_study(path: PathLike) -> Study:
@@ -249,7 +243,7 @@ def open_study(path: PathLike) -> Study:
             remedy=f"Use the version that wrote it ({record.get('versions', {})}).",
             file=file,
         )
-    study = Study(path, load_scenario(path / SCENARIO), record)
+    study = Study(path, load_stored_scenario(path / SCENARIO), record)
     used = study.experiment.setup.workcell.model_file
     if file_hash(used) != model:
         raise RunDirectoryError(
@@ -274,12 +268,8 @@ def numbers_of_regions(text: str) -> tuple[int, ...]:
         ) from error
 
 
-def _now() -> str:
-    return datetime.now().astimezone().isoformat(timespec="seconds")
-
-
 def _experiment(scenario: Path) -> Experiment:
-    return Experiment(load_scenario(scenario))
+    return Experiment(load_stored_scenario(scenario))
 
 
 def _carry_out(experiment: Experiment, job: tuple[int, int]) -> StudyRun:

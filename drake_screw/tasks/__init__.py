@@ -2,7 +2,7 @@
 
 from drake_screw.tasks.boxes import BoxRegions, box_regions, free_axes, from_unit_box
 from drake_screw.tasks.regions import GridRegions, Regions, grid_regions
-from drake_screw.tasks.sampling import draw, uniform
+from drake_screw.tasks.sampling import draw, draw_in_all, uniform
 from drake_screw.tasks.work_area import AXES, ObjectArea, WorkArea
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "WorkArea",
     "box_regions",
     "draw",
+    "draw_in_all",
     "free_axes",
     "from_unit_box",
     "grid_regions",

@@ -7,6 +7,7 @@ asked for at a time, in which order, and by how many workers makes no difference
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.tasks.regions import Regions
 from drake_screw.typing import Array
@@ -72,3 +73,39 @@ def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, co
     lower, upper = regions.bounds(region)
     unit = uniform(lower.shape, seed=seed, key=(round, region), start=start, count=count)
     return lower + unit * (upper - lower)
+
+
+def draw_in_all(
+    regions: Regions,
+    counts: ArrayLike,
+    *,
+    seed: int,
+    round: int,
+    starts: ArrayLike = 0,
+) -> tuple[Array, NDArray[np.int64]]:
+    """Instances drawn in every region, region after region.
+
+    Args:
+        regions: the partition, K regions.
+        counts: how many in each; (K,), or one number for all.
+        seed: of the run.
+        round: of the run, from 0.
+        starts: the first of each region's stream, as `counts`.
+
+    Returns:
+        x_y_yaw: (N, k, 3) m, m, rad, where N is the sum of `counts`.
+        region: (N,) of each.
+
+    >>> from drake_screw.tasks import ObjectArea, WorkArea, grid_regions
+    >>> area = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=0.0),))
+    >>> places, region = draw_in_all(grid_regions(area, {"x": 3}), [2, 0, 1], seed=0, round=0)
+    >>> places.shape, region.tolist()
+    ((3, 1, 3), [0, 0, 2])
+    """
+    count = np.broadcast_to(np.asarray(counts, dtype=np.int64), regions.K)
+    start = np.broadcast_to(np.asarray(starts, dtype=np.int64), regions.K)
+    places = [
+        draw(regions, j, seed=seed, round=round, start=int(start[j]), count=int(count[j]))
+        for j in range(regions.K)
+    ]
+    return np.concatenate(places), np.repeat(np.arange(regions.K), count)

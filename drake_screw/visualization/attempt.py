@@ -88,7 +88,7 @@ class Attempt:
         return joint, float(self.margin[:, joint].min())
 
     def axis_distance(self, segment: int) -> float:
-        """Distance in m of the hand's way in a segment from its screw's axis."""
+        """Distance in m of the end effector's path in a segment from its screw's axis."""
         return axis_distance(self.starts[segment], self.guides[segment])
 
     def straight(self, segment: int) -> bool:
@@ -166,8 +166,8 @@ def headline(attempt: Attempt) -> str:
         touching = "; ".join(f"{a} touches {b}" for a, b in attempt.bodies[:2])
         return f"fails {where}: {touching or 'the arm touches something'}"
     return (
-        f"fails {where}: the hand gets no farther along this screw; the arm is stretched out or "
-        "near a singular pose"
+        f"fails {where}: the end effector gets no farther along this screw; the arm is stretched "
+        "out or near a singular pose"
     )
 
 

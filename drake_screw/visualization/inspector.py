@@ -1,9 +1,9 @@
 """An attempt in Meshcat: its screws, its frames, the arm along its plan, and where it failed.
 
-Under ``/attempts/01`` and so on, one for each demonstration drawn: ``segments/01``, ... (the hand's
-way), ``axes/01``, ... (the screws), ``frames`` (the guiding poses), ``ghost`` (the arm where the
-plan failed) and ``dial`` (the range of the joint at its limit, with a needle). Under ``/instance``
-the objects. The robot itself is the one of `Scene`, at ``/workcell``.
+Under ``/attempts/01`` and so on, one for each demonstration drawn: ``segments/01``, ... (the end
+effector's path), ``axes/01``, ... (the screws), ``frames`` (the guiding poses), ``ghost`` (the arm
+where the plan failed) and ``dial`` (the range of the joint at its limit, with a needle). Under
+``/instance`` the objects. The robot itself is the one of `Scene`, at ``/workcell``.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class Inspector:
         return Drawn(attempt, path, samples, moving)
 
     def _draw_segment(self, path: str, attempt: Attempt, segment: int, status: str) -> None:
-        """The hand's way along one screw; of the failing one the part that was done is thicker."""
+        """The path along one screw; of the failing one the part that was done is thicker."""
         color = STATUS_COLORS[status]
         fraction = float(attempt.plan.outcome.fraction) if status == FAILED else 1.0
         ends = {"way": (0.0, fraction), "rest": (fraction, 1.0)}

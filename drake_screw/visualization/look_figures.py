@@ -22,7 +22,7 @@ _HATCH = "////"
 
 
 def distance_figure(look: Look) -> Figure:
-    """Distance of the hand from each object, with its region of interest shaded.
+    """Distance of the end effector from each object, with its region of interest shaded.
 
     The dashed line is the region's radius. Visits to it that are left out are hatched; the ticks
     below are guiding poses.

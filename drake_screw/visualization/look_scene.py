@@ -1,8 +1,8 @@
 """A look at a recording in Meshcat, beside the workcell that `Scene` draws.
 
-Under ``/recording``: ``path`` (the hand's), ``objects``, ``regions`` (spheres, the regions of
-interest), ``guiding_poses``, and of each screw ``screws/01``, ... (the hand's way) and ``axes/01``,
-....
+Under ``/recording``: ``path`` (the end effector's), ``objects``, ``regions`` (spheres, the regions
+of interest), ``guiding_poses``, and of each screw ``screws/01``, ... (the path along it) and
+``axes/01``, ....
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ TRIAD = 0.03
 
 
 def view_figure(look: Look, objects: Sequence[ObjectConfig]) -> Figure:
-    """The hand's path, the objects, the guiding poses, and the screws with their axes.
+    """The end effector's path, the objects, the guiding poses, and the screws with their axes.
 
     Beside it, from the first guiding pose to the last, the same from nearby.
 
@@ -54,7 +54,7 @@ _AXES = {"projection": "3d", "computed_zorder": False}
 
 
 def _draw(ax: Axes3D, look: Look, p_WE: Array, points: Array) -> None:
-    """A part of the hand's path (m, 3), the screws, the guiding poses; with room for `points`."""
+    """A part of the path (m, 3), the screws and the guiding poses; with room for `points`."""
     low, high = points.min(axis=0) - 0.05, points.max(axis=0) + 0.05
     _frame(ax, low, high)
     ax.plot(*p_WE.T, color=QUIET, linewidth=1.0, gid="path")
@@ -81,7 +81,7 @@ def _draw_bowl(ax: Axes3D, item: ObjectConfig, X_WO: Array) -> None:
 
 
 def _draw_axis(ax: Axes3D, X_WA: Array, X_WB: Array, low: Array, high: Array) -> None:
-    """The axis of a screw beside the hand, unless it is outside the picture."""
+    """The axis of a screw beside the end effector, unless it is outside the picture."""
     screw = screw_between(X_WA, X_WB)
     begin = screw.point + screw.axis * (screw.axis @ (X_WA[:3, 3] - screw.point))
     if looks_straight(X_WA, X_WB) or ((begin < low) | (begin > high)).any():
@@ -105,7 +105,7 @@ def _frame(ax: Axes3D, low: Array, high: Array) -> None:
 
 def _handles(look: Look) -> list[Line2D]:
     ring = {"marker": "o", "color": "white", "markeredgecolor": INK, "linestyle": ""}
-    handles = [Line2D([], [], color=QUIET, label="hand as recorded")]
+    handles = [Line2D([], [], color=QUIET, label="path as recorded")]
     for i in dict.fromkeys(segment.object for segment in look.screws):
         label = f"screws of the {look.shown.names[i]}"
         handles.append(Line2D([], [], color=object_color(i), linewidth=2.6, label=label))

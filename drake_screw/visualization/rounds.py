@@ -107,7 +107,7 @@ class Cells:
     stands for the one with the largest estimate. It is as small as the smallest of them.
 
     Attributes:
-        object: index of the object, the first that has room to move in both x and y.
+        object: index of the object, the first that may move in both x and y.
         lower, upper: (c, 2) x, y of the cells' corners in m.
         region: (c,) the region that each cell stands for.
         outlines: (K, 2, 2) x, y of the lower and upper corner of each region.
@@ -132,8 +132,8 @@ def cells(regions: Regions, estimates: NDArray[np.float64]) -> Cells:
         regions: of the work area.
         estimates: (K,) failure probability, NaN where unknown.
     """
-    room = regions.area.upper - regions.area.lower
-    drawn = int((room[:, :2] > 0.0).all(axis=1).argmax())
+    extent = regions.area.upper - regions.area.lower
+    drawn = int((extent[:, :2] > 0.0).all(axis=1).argmax())
     outlines = np.stack(regions.bounds(np.arange(regions.K)), axis=1)[:, :, drawn, :2]
     _, first = np.unique(outlines, axis=0, return_index=True)
     tiles = outlines[np.sort(first)]

@@ -41,7 +41,7 @@ from drake_screw.visualization.rounds import Cells, Round, Sample, cells, sample
 
 MOST_DOTS = 6_000
 CLAY = "#efeee6"
-HAND = "#3d3a4a"
+PATH = "#3d3a4a"
 SKY = ([0.93, 0.94, 0.96], [0.70, 0.72, 0.76])
 
 
@@ -50,8 +50,8 @@ class Scene:
 
     The robot stands in its start configuration. Shown of a round are the regions coloured by
     estimated failure probability with the weakest framed, instances coloured by outcome, the
-    suggested place as glowing objects; of the demonstrations in hand the path of the hand, the
-    guiding poses as triads and a numbered token where the object stood, with the objects
+    suggested place as glowing objects; of the demonstrations in hand the path of the end effector,
+    the guiding poses as triads and a numbered token where the object stood, with the objects
     themselves at the latest one. Earlier rounds stay in the scene tree, hidden.
 
     Args:
@@ -208,10 +208,10 @@ class Scene:
         self.meshcat.Delete("/objects")
         for i, demonstration in enumerate(demonstrations):
             path, latest = f"/demonstrations/{i + 1:02d}", i + 1 == len(demonstrations)
-            hand = _spaced(demonstration.path[:, :3, 3], 0.01)
-            if len(hand) > 1:
-                tube = meshes.tube(hand, 0.005 if latest else 0.003)
-                draw(self.meshcat, f"{path}/hand", tube, HAND, 1.0 if latest else 0.6)
+            points = _spaced(demonstration.path[:, :3, 3], 0.01)
+            if len(points) > 1:
+                tube = meshes.tube(points, 0.005 if latest else 0.003)
+                draw(self.meshcat, f"{path}/path", tube, PATH, 1.0 if latest else 0.6)
             guides = demonstration.transfer(demonstration.X_WO)
             draw_frames(self.meshcat, f"{path}/guiding_poses", guides)
             place = demonstration.X_WO[drawn.object, :3, 3]

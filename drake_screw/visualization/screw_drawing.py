@@ -1,4 +1,4 @@
-"""A constant screw between two poses in Meshcat: the hand's way, the axis, the turn about it."""
+"""A constant screw between two poses in Meshcat: the path along it, its axis, the turn about it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from drake_screw.visualization.drawing import draw
 
 AXIS = "#5b3fa8"
 FAR_AXIS = 1.0
-"""m. A screw whose axis lies farther from the hand than this looks straight."""
+"""m. A screw whose axis lies farther from the end effector than this looks straight."""
 STRAIGHT = 0.02
 """rad. A screw that turns less than this looks straight, too."""
 
@@ -30,7 +30,7 @@ def looks_straight(X_WA: Array, X_WB: Array) -> bool:
 
 
 def screw_track(X_WA: Array, X_WB: Array, first: float = 0.0, last: float = 1.0) -> Array:
-    """Points (m, 3) in m on the way of the hand, from one screw parameter to another."""
+    """Points (m, 3) in m on the path of the end effector, from one screw parameter to another."""
     if last <= first:
         return np.zeros((0, 3))
     p_WE = sclerp_position(X_WA, X_WB, np.linspace(first, last, 41))
@@ -40,7 +40,7 @@ def screw_track(X_WA: Array, X_WB: Array, first: float = 0.0, last: float = 1.0)
 def draw_screw(meshcat: Meshcat, path: str, X_WA: Array, X_WB: Array, color: str) -> None:
     """The axis with a helix around it that shows angle, sense and pitch of the screw.
 
-    A screw that looks straight gets an arrow beside the hand's way instead.
+    A screw that looks straight gets an arrow beside the end effector's path instead.
 
     Args:
         meshcat: drawn into.

@@ -29,8 +29,8 @@ def arm_sketch(
     chosen = attempt.samples(7)
     q = attempt.plan.q[chosen]
     joints = np.stack([linkage.joint_frames(j, q)[:, :3, 3] for j in range(attempt.arm.n)], axis=1)
-    hand = attempt.arm.pose(q)[:, None, :3, 3]
-    bodies = np.concatenate([joints, hand], axis=1)
+    end = attempt.arm.pose(q)[:, None, :3, 3]
+    bodies = np.concatenate([joints, end], axis=1)
     above = _view(attempt, bodies, area, objects, table, np.array([[0, -1, 0], [-1, 0, 0]]))
     side = _view(attempt, bodies, area, objects, table, np.array([[1, 0, 0], [0, 0, -1]]))
     return Markup(

@@ -10,6 +10,7 @@ from markupsafe import Markup
 from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_screw.errors import DrakeScrewError
+from drake_screw.files import write_text, writing
 from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.lifetime import page_meshcat, scratch
 from drake_screw.visualization.meshcat_page import add_to_page, render
@@ -89,21 +90,18 @@ def save_page(reader: RunReader, selection: Selection, file: Path) -> Path:
             remedy=f"Name it {file.with_suffix('.html').name}; the numbers are written beside it.",
             file=file,
         )
-    with scratch():
-        page = _saved_page(reader, selection)
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise DrakeScrewError(
-            f"cannot be written: {error.strerror}", remedy="Give another --html.", file=file
-        ) from error
+    texts = {}
     if selection.instance is not None:
         attempts = reader.attempts(selection.round, selection.instance)
-        file.with_suffix(".csv").write_text(attempts_csv(attempts))
         facts = {"round": selection.round + 1, "instance": selection.instance}
-        text = attempts_json(attempts, facts, reader.setup.area)
-        file.with_suffix(".json").write_text(text)
+        texts[file.with_suffix(".csv")] = attempts_csv(attempts)
+        texts[file.with_suffix(".json")] = attempts_json(attempts, facts, reader.setup.area)
+    with scratch():
+        texts[file] = _saved_page(reader, selection)
+    for written, text in texts.items():
+        with writing(written, remedy="Give another --html."):
+            written.parent.mkdir(parents=True, exist_ok=True)
+            write_text(written, text)
     return file
 
 

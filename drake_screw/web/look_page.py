@@ -12,7 +12,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Look
 from drake_screw.demonstrations.look_summary import LookSummary
 from drake_screw.errors import DrakeScrewError
-from drake_screw.files import write_text
+from drake_screw.files import write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.runs.pictures import make_scene
 from drake_screw.visualization.drawing import AXES
@@ -42,14 +42,9 @@ def write_look_page(looks: Looks, file: Path) -> Path:
         DrakeScrewError: it cannot be written there.
     """
     text = look_page(looks)
-    try:
+    remedy = "Give --html a file in a folder that exists and that you may write to."
+    with writing(file, remedy, DrakeScrewError):
         write_text(file, text)
-    except OSError as error:
-        raise DrakeScrewError(
-            f"cannot be written: {error.strerror}",
-            remedy="Give --html a file in a folder that exists and that you may write to.",
-            file=file,
-        ) from error
     return file
 
 
@@ -98,7 +93,7 @@ def _scene(setup: Setup, look: Look) -> str:
 def _key(setup: Setup) -> list[tuple[str, str]]:
     """What the colours mean."""
     return [
-        (QUIET, "hand as recorded"),
+        (QUIET, "path as recorded"),
         *(
             (object_color(i), f"screws, and region of interest, of the {item.name}")
             for i, item in enumerate(setup.objects)

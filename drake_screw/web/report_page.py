@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from drake_screw.acquisition import RoundFinished
+from drake_screw.files import write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.attempt import headline
@@ -29,6 +30,8 @@ WORST = 8
 OTHERS = 2
 """Instances of other regions that are pictured for each round."""
 
+_REMEDY = "A report is written into its run directory; make the folder writable."
+
 
 def write_report(reader: RunReader, folder: Path | None = None) -> Path:
     """Write report.html, and a 3-D page for an instance of each round into the folder inspect.
@@ -39,9 +42,13 @@ def write_report(reader: RunReader, folder: Path | None = None) -> Path:
 
     Returns:
         The report.
+
+    Raises:
+        DrakeScrewError: it cannot be written there.
     """
     folder = reader.directory.path if folder is None else folder
-    folder.mkdir(parents=True, exist_ok=True)
+    with writing(folder, _REMEDY):
+        folder.mkdir(parents=True, exist_ok=True)
     linkage = Linkage(reader.setup.workcell)
     rounds = []
     for round in range(reader.rounds):
@@ -58,7 +65,8 @@ def write_report(reader: RunReader, folder: Path | None = None) -> Path:
         **_record(reader),
     )
     file = folder / "report.html"
-    file.write_text(text + "\n", encoding="utf-8")
+    with writing(file, _REMEDY):
+        write_text(file, text + "\n")
     return file
 
 

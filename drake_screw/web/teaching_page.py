@@ -148,7 +148,7 @@ class TeachingPage:
         self._inspector.meshcat.Flush()
         state: dict[str, Any] = {"title": self._title, "headline": headline, "leading": False}
         state |= {"message": "", "clock": "", "hint": "", "can": []}
-        state |= {"hand": [], "joints": [], "segments": []}
+        state |= {"pose": [], "joints": [], "segments": []}
         self._server.show(state)
 
     def _announce_request(self, number: int) -> None:

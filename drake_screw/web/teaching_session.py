@@ -81,13 +81,13 @@ class TeachingSession:
     def handle(self, message: dict[str, Any]) -> None:
         """A message of the panel; one that means nothing changes nothing.
 
-        Messages: ``{"do": "record"}`` (stop, accept, repeat, skip), ``{"hand": i, "value": v}``
+        Messages: ``{"do": "record"}`` (stop, accept, repeat, skip), ``{"pose": i, "value": v}``
         (a slider of the end effector's pose), ``{"joint": j, "value": v}``; m or rad.
         """
         match message:
             case {"do": str(action)} if action in self._actions():
                 getattr(self, f"_{action}")()
-            case {"hand": int(i), "value": int() | float() as value} if self.leading:
+            case {"pose": int(i), "value": int() | float() as value} if self.leading:
                 if 0 <= i < len(POSE_SLIDERS) and isfinite(value):
                     low, high = self._slider_range
                     self._sliders[i] = np.clip(value, low[i], high[i])
@@ -141,7 +141,7 @@ class TeachingSession:
             "hint": _hint(self._setup),
             "can": self._actions(),
             "leading": self.leading,
-            "hand": [
+            "pose": [
                 {"name": n, "low": a, "high": b, "value": round(float(v), 5), "unit": u}
                 for (n, u), a, b, v in zip(POSE_SLIDERS, low, high, self._sliders, strict=True)
             ],
@@ -248,6 +248,6 @@ def _hint(setup: Setup) -> str:
     if isinstance(config, FaithfulConfig):
         return ""
     return (
-        f"Move the hand by more than {1e3 * config.spacing:.0f} mm while it turns: a turn on the "
-        "spot leaves no trace in a recording."
+        f"Move the end effector by more than {1e3 * config.spacing:.0f} mm while it turns: a turn "
+        "on the spot leaves no trace in a recording."
     )

@@ -157,7 +157,7 @@ def test_recordings_survive_the_recorders_file(
 def test_segmentation_finds_the_task(
     demonstrations: list[Demonstration], workcell: Workcell, motion: str
 ) -> None:
-    """Few guiding poses, near the bowl, with the motion's roll about the hand's axis in them."""
+    """Few guiding poses, near the bowl, with the motion's roll about the tool's axis in them."""
     for demonstration in demonstrations:
         X = demonstration.X_OE
         assert 3 <= len(X) <= 8

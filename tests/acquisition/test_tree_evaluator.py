@@ -19,6 +19,7 @@ from tests.acquisition.conftest import Obliging, learn
 BOWL = ObjectArea("bowl", (0.0, 0.0, 0.0), (1.0, 1.0, 0.0), 0.0)
 CUP = ObjectArea("cup", (2.0, 0.5, -0.5), (2.4, 0.5, 0.5), 0.0)
 ONE, TWO = WorkArea((BOWL,)), WorkArea((BOWL, CUP))
+START = [0.25]
 GOAL = Goal(beta=0.95, epsilon=0.02, delta=0.05)
 
 
@@ -29,6 +30,7 @@ class Nearby:
     reach: float
 
     def any_success(self, demonstrations, X_WO, q_start) -> Outcomes:
+        assert q_start.tolist() == START
         away = np.array(
             [np.abs(X_WO - d.X_WO).max(axis=(1, 2, 3)) for d in demonstrations]
         ).reshape(len(demonstrations), len(X_WO))
@@ -61,7 +63,7 @@ def evaluator(
     area=ONE, *, reach=0.75, smallest=1 / 64, seed=3, progress=None, planner=Nearby
 ) -> TreeEvaluator:
     tree = CertifyOrSplit(GOAL, 2 if area is ONE else 4, smallest, 0.5)
-    return TreeEvaluator(planner(reach), area, np.zeros(1), tree, seed, progress)
+    return TreeEvaluator(planner(reach), area, np.array(START), tree, seed, progress)
 
 
 FIRST = (demonstration_at("first", (0.2, 0.2, 0.0)),)
@@ -173,7 +175,7 @@ def test_a_run_with_two_objects_certifies_what_is_true(seed) -> None:
         assert (split[:, [0, 1], [2, 1]] == 0.0).all(), "fixed axes are not split"
     rng = np.random.default_rng(seed)
     places = rng.uniform(TWO.lower, TWO.upper, (20_000, 2, 3))
-    outcomes = Nearby(0.5).any_success(end.demonstrations, TWO.X_WO(places), None)
+    outcomes = Nearby(0.5).any_success(end.demonstrations, TWO.X_WO(places), np.array(START))
     assert np.mean(~outcomes.any_success) <= 1 - GOAL.beta
 
 

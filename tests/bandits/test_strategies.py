@@ -34,6 +34,31 @@ def test_finds_a_region_that_often_fails(name: str, region: int) -> None:
     assert verdict.gap is not None
 
 
+REASONS = {
+    "naive_pac": ("<= 1 - epsilon - beta = 0.03", "> 1 - epsilon - beta = 0.03"),
+    "median_elimination": ("<= 1 - epsilon - beta = 0.03", "> 1 - epsilon - beta = 0.03"),
+    "eprocess": ("all regions cleared", "region flagged"),
+    "clopper_pearson": ("all regions cleared", "region flagged"),
+}
+
+
+@pytest.mark.parametrize("name", STRATEGIES)
+def test_a_verdict_states_why_and_what(name: str) -> None:
+    certain, stuck = (
+        make_strategy(name, GOAL).decide(arms(mu, 3), 4, attempt=1)
+        for mu in (np.zeros(4), worst(0.5, 0.0, 4))
+    )
+    bounds = ("all upper bounds at most 1 - beta", "an epsilon-worst region found")
+    for verdict, expected in zip((certain, stuck), REASONS.get(name, bounds), strict=True):
+        assert verdict.reason.endswith(expected)
+    assert certain.claim.startswith("every region succeeds at least 0.95 of the time")
+    if name == "naive_pac":
+        assert stuck.claim.startswith("no region fails more often than this one by over 0.02")
+    else:
+        least = f"{stuck.lower[0]:.4f}"
+        assert stuck.claim.startswith(f"this region fails at least {least} of the time")
+
+
 @pytest.mark.parametrize("name", STRATEGIES)
 @pytest.mark.parametrize("K", [1, 3])
 def test_any_number_of_regions(name: str, K: int) -> None:

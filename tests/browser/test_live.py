@@ -97,7 +97,7 @@ def test_a_demonstration_is_given_by_clicks_alone(browser) -> None:
         browser.click("#record")
         browser.until(lambda: "recording" in browser.text("#clock"))
         for axis, value in ((1, 0.72), (2, 0.56), (3, 0.10)):
-            browser.slide(f"#hand tr:nth-child({axis}) input", value)
+            browser.slide(f"#pose tr:nth-child({axis}) input", value)
         moved = "workcell/baxter/left_hand"
         browser.until(lambda: np.linalg.norm(browser.node(moved)["matrix"][:3, 3] - start) > 0.35)
         joint = browser.still(lambda: browser.text("#arm tr:nth-child(1) td:nth-child(3)"))
@@ -113,10 +113,11 @@ def test_a_demonstration_is_given_by_clicks_alone(browser) -> None:
         browser.click("#repeat")
         browser.until(lambda: browser.node("attempts") is None)
         browser.click("#record")
-        browser.slide("#hand tr:nth-child(1) input", 0.70)
+        for axis, value in ((1, 0.70), (2, 0.56), (3, 0.10)):
+            browser.slide(f"#pose tr:nth-child({axis}) input", value)
         browser.until(
             lambda: (
-                browser.text("#hand tr:nth-child(1) td:nth-child(3)") == "0.700 m"
+                browser.text("#pose tr:nth-child(2) td:nth-child(3)") == "0.560 m"
                 and float(browser.text("#clock").split()[1]) > 2.0
             )
         )

@@ -45,8 +45,9 @@ def test_evaluate_agrees_with_the_outcomes_of_another_planner(
     places = tmp_path / "places.csv"
     places.write_text("\n".join(",".join(row[:2]) for row in theirs) + "\n")
     code, _, _ = command(
-        "evaluate", task, "--demonstrations", shared / "demos" / task, "--instances", places,
-        "--output", "out.csv", "--model", shared / "reference" / "baxter_left_calibrated.sdf",
+        "evaluate", f"{task}_paper", "--demonstrations", shared / "demos" / task,
+        "--instances", places, "--output", "out.csv",
+        "--model", shared / "reference" / "baxter_left_calibrated.sdf",
     )  # fmt: skip
     assert code == 0
     ours = [line.split(",") for line in Path("out.csv").read_text().splitlines()]

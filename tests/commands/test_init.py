@@ -78,7 +78,9 @@ def test_what_is_shipped_is_listed(command: Command) -> None:
     assert [item["name"] for item in shipped["scenarios"]] == [
         "pouring",
         "pouring_iiwa",
+        "pouring_paper",
         "scooping",
+        "scooping_paper",
     ]
     models = {item["name"]: item for item in shipped["models"]}
     assert {"left_s0", "right_w2"} <= set(models["baxter"]["joints"])

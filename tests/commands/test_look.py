@@ -18,11 +18,12 @@ from tests.commands.conftest import Command
 from tests.commands.test_json import PAGE, check_keys
 
 FAITHFUL = ["--set", "segmentation={method: faithful}"]
+PUBLISHED = ["--set", "segmentation={method: published}"]
 
 
 @pytest.fixture
 def spoilt(library: Path, tmp_path: Path) -> Path:
-    """The library, with the bowl of demo_02 where the hand never comes."""
+    """The library, with the bowl of demo_02 where the end effector never comes."""
     copy = Path(shutil.copytree(library, tmp_path / "spoilt"))
     file = copy / "demo_02" / "object_poses.csv"
     X_WO = np.loadtxt(file, delimiter=",")
@@ -38,7 +39,7 @@ def no_network(page: str) -> bool:
     return not any(re.search(loads, text) for text in (page, *inner))
 
 
-@pytest.mark.parametrize("method", [[], FAITHFUL])
+@pytest.mark.parametrize("method", [PUBLISHED, FAITHFUL])
 def test_a_recording_in_words(command: Command, library: Path, method: list[str]) -> None:
     code, out, err = command("look", library / "demo_02", *method)
     assert (code, err) == (0, "")
@@ -49,7 +50,7 @@ def test_a_recording_in_words(command: Command, library: Path, method: list[str]
     assert first == str(look)
     assert f"{len(look.t):,} in {look.recording.duration:.2f} s" in out
     assert "pouring (the default; --scenario gives another)" in out
-    assert f"bowl        {look.distance.min():.3f} m from the hand at the nearest" in out
+    assert f"bowl        {look.distance.min():.3f} m from the end effector at the nearest" in out
     assert f"{look.margin.min():.3f} rad from its" in out
     assert re.search(
         r"^dropped +\d+% of the time, outside the region of interest: 0\.00", out, re.M
@@ -68,11 +69,11 @@ def test_a_library_is_a_table_with_what_is_refused(command: Command, spoilt: Pat
         re.MULTILINE,
     )
     assert re.search(r"^demo_02 +[\d,]+ +[\d.]+ s +not used *$", out, re.MULTILINE)
-    why = "demo_02: not used: no motion is kept: the hand comes no nearer than"
+    why = "demo_02: not used: no motion is kept: the end effector comes no nearer than"
     assert why in out
     page = Path("page.html").read_text(encoding="utf-8")
     assert re.findall(r'<section id="(\w+)">', page) == ["demo_01", "demo_02", "demo_03"]
-    assert page.count("no motion is kept: the hand comes no nearer than") == 2
+    assert page.count("no motion is kept: the end effector comes no nearer than") == 2
     assert 'href="#demo_02"' in page
     assert "<iframe" not in page
     assert no_network(page)

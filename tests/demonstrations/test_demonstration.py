@@ -25,7 +25,7 @@ COUNTS = {
 
 
 def sliding_hand() -> ScrewChain:
-    """Three prismatic joints along x, y, z and a wrist about z: q is the hand's place."""
+    """Three prismatic joints along x, y, z and a wrist about z: q is the end effector's place."""
     screws = np.zeros((4, 6))
     screws[:3, 3:] = np.eye(3)
     screws[3, 2] = 1.0
@@ -104,7 +104,8 @@ def test_recorded_demonstrations_have_the_published_number_of_guiding_poses(
     library = read_library(
         shared / "demos" / task, arm.joint_names, arm.lower, arm.upper, objects=1
     )
-    demonstrations = [demonstration_from_recording(recording, arm) for recording in library]
+    config = SegmentationConfig()
+    demonstrations = [demonstration_from_recording(recording, arm, config) for recording in library]
     assert [len(d.X_OE) for d in demonstrations] == COUNTS[task]
     for d, recording in zip(demonstrations, library, strict=True):
         assert d.name == recording.name

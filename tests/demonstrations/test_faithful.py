@@ -63,7 +63,7 @@ def held_in_order(
 def moved(*steps: tuple[float, Sequence[float], Sequence[float], int]) -> np.ndarray:
     """A path from the identity: each step turns by an angle about an axis of W while it is shifted.
 
-    Steps are (angle, axis, shift, samples); the hand turns on the spot while its origin goes
+    Steps are (angle, axis, shift, samples); the frame turns on the spot while its origin goes
     straight on.
     """
     X = [np.eye(4)]
@@ -196,6 +196,7 @@ def test_paths_of_known_screws(shown: tuple[int, np.ndarray], seed: int) -> None
     assert screws_of(Y @ path)[0] == found
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=15)
 @given(known_screws(), st.integers(0, 2**32 - 1))
 def test_no_other_cuts_do_with_fewer_screws(shown: tuple[int, np.ndarray], seed: int) -> None:
@@ -278,7 +279,7 @@ def test_three_circles_are_three_circles(turning: bool) -> None:
         )
     )
     assert around[-1] - around[0] == pytest.approx(6.0 * np.pi, abs=0.01)
-    # a hand that turns along goes a third of a turn and more on one screw
+    # an end effector that turns along goes a third of a turn and more on one screw
     assert len(X_OE) <= (8 if turning else 17)
     (measured,) = fidelity(path, t, ABOVE, X_OE, objects, ["pot"], DEFAULT)
     assert measured.turn_kept == pytest.approx(6.0 * np.pi if turning else 0.0, abs=0.1)

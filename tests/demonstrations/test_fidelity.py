@@ -170,20 +170,20 @@ def test_an_object_far_away_is_told() -> None:
     assert "0.35 m" in error.message
 
 
-def test_an_object_at_the_very_place_of_the_hand_is_told() -> None:
+def test_an_object_at_the_very_place_of_the_end_effector_is_named() -> None:
     path = dip()
     error = refused(path, path[60:61])
-    assert error.reason == "at the hand"
-    assert "bowl is at the very place of the hand" in error.message
+    assert error.reason == "at the end effector"
+    assert "bowl is at the end effector's very place" in error.message
     assert "holds 1 of 400 samples" in error.message
 
 
-def test_a_region_in_which_the_hand_does_not_move_is_told() -> None:
+def test_a_region_in_which_the_end_effector_does_not_move_is_named() -> None:
     z = np.abs(np.linspace(-0.4, 0.4, 401)) + 0.1
     path = pose(np.eye(3), np.stack([0.0 * z, 0.0 * z, z], axis=1))
     error = refused(path, BOWL, FaithfulConfig(region_of_interest=1.0))
     assert error.reason == "small region"
-    assert "holds 1 of 401 samples (0.00 s), in which the hand moves by 0 mm" in error.message
+    assert "holds 1 of 401 samples (0.00 s), in which the end effector moves by 0" in error.message
 
 
 def test_next_to_nothing_of_what_was_shown_near_the_object_is_told() -> None:

@@ -16,7 +16,7 @@ DEFAULT = FaithfulConfig()
 
 
 def along(*points: Sequence[float], step: float = 0.001) -> np.ndarray:
-    """A hand that goes straight from point to point."""
+    """An end effector that goes straight from point to point."""
     parts = [np.array(points[:1], dtype=float)]
     for a, b in pairwise(points):
         count = max(1, round(float(np.linalg.norm(np.subtract(b, a))) / step))

@@ -177,7 +177,7 @@ def test_lingering_ends_a_segment() -> None:
 
 
 def test_going_back_a_little_is_tremor_and_ends_no_segment() -> None:
-    """The hand trembles aside, and by 1.6 mm back as seen along the screw."""
+    """The end effector trembles aside, and by 1.6 mm back as seen along the screw."""
     x_y = [(0, 0), (12, 0), (11, 8), (30, -2), (45, 0), (60, 0), (75, 0), (90, 0)]
     p = np.array([(x / 1000, y / 1000, 0.0) for x, y in x_y])
     along = p @ p[3] / np.linalg.norm(p[3])
@@ -279,7 +279,7 @@ def test_a_pose_in_two_regions_is_kept_once() -> None:
     np.testing.assert_array_equal(objects, 0)
 
 
-def test_a_hand_that_passes_through_the_objects_origin() -> None:
+def test_an_end_effector_that_passes_through_the_objects_origin() -> None:
     path = straight((0.3, 0.0, 0.0), (0.0, 0.0, 0.0))
     X_OE, _, kept = guiding_poses(path, np.eye(4)[None], DEFAULT)
     assert list(kept) == [len(path) - 1]

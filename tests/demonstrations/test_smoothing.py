@@ -11,7 +11,7 @@ RNG = np.random.default_rng(0)
 
 
 def stirring(t: np.ndarray) -> np.ndarray:
-    """A circle of 5 cm in 2 s, the hand turning along, through a half turn and beyond."""
+    """A circle of 5 cm in 2 s, the end effector turning along, through a half turn and beyond."""
     turn = np.pi * t
     return exp(np.stack([turn, 0.0 * t, 0.0 * t], axis=1) @ np.eye(3, 6)) @ exp(
         [0, 0, 0, 0, 0.05, 0]

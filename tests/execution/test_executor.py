@@ -82,7 +82,7 @@ def test_without_a_plan_it_is_idle_and_holds_still(bench) -> None:
     assert idle.finish(0.1).phase is Phase.IDLE
 
 
-def test_it_leads_the_hand_along_the_screws(bench, arm, timed) -> None:
+def test_it_leads_the_end_effector_along_the_screws(bench, arm, timed) -> None:
     run = bench()
     run.give(timed)
     seen, progress = [], []
@@ -121,7 +121,7 @@ def test_desired_positions_advance_at_the_desired_velocity(bench, timed) -> None
 
 
 def test_it_is_drawn_to_the_planned_joint_path(bench, arm, timed) -> None:
-    """Begun a little off in the motion the hand leaves free, it comes back to the plan."""
+    """Begun a little off in the motion the end effector leaves free, it comes back to the plan."""
     J = arm.jacobian(np.array(START))
     free = np.linalg.svd(J)[2][-1]
     off = np.array(START) + 0.015 * free
@@ -214,7 +214,7 @@ def test_an_arm_that_does_not_follow_is_blocked(bench, timed) -> None:
     np.testing.assert_allclose(run.get("desired_state"), stuck)
 
 
-def test_a_hand_that_does_not_arrive_fails(bench, timed) -> None:
+def test_an_end_effector_that_does_not_arrive_fails(bench, timed) -> None:
     run = bench(tolerances=Tolerances(settling=0.1))
     run.held = lambda state: state + 0.01 * np.eye(14)[0]
     run.give(timed)

@@ -32,7 +32,7 @@ def test_it_plays_the_path(source, context, timed) -> None:
         assert source.GetOutputPort("progress").Eval(context) == [t / timed.duration]
 
 
-def test_it_is_done_when_the_measured_hand_is(source, context, timed) -> None:
+def test_it_is_done_when_the_measured_end_effector_is(source, context, timed) -> None:
     status = source.GetOutputPort("status")
     context.SetTime(0.1)
     assert status.Eval(context).phase is Phase.RUNNING
@@ -40,7 +40,7 @@ def test_it_is_done_when_the_measured_hand_is(source, context, timed) -> None:
     assert status.Eval(context).phase is Phase.DONE
 
 
-def test_a_hand_elsewhere_fails_after_settling(source, context, timed) -> None:
+def test_an_end_effector_elsewhere_fails_after_settling(source, context, timed) -> None:
     off = np.concatenate([timed.segments[0].q[0], np.zeros(7)])
     source.GetInputPort("measured_state").FixValue(context, off)
     status = source.GetOutputPort("status")

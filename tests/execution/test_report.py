@@ -31,7 +31,7 @@ def test_the_plan_itself_is_flawless(timed, arm, perfect) -> None:
     assert report.worst_joint == arm.joint_names[np.argmin(margin.min(axis=0))]
 
 
-def test_a_late_hand_is_off_its_set_point_but_on_its_screw(timed, arm, perfect) -> None:
+def test_a_late_end_effector_is_off_its_set_point_but_on_its_screw(timed, arm, perfect) -> None:
     t, q, v = perfect
     late = np.concatenate([np.repeat(q[:1], 20, axis=0), q[:-20]])
     report = make_report(timed, arm, t, late, v, DONE, ())

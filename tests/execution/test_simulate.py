@@ -119,7 +119,7 @@ def test_a_set_point_out_of_reach_ends_the_execution(station, timed) -> None:
 
 
 def test_touching_the_bowl_is_seen(robot, arm, timed) -> None:
-    """A bowl just under the hand's path is grazed; the plan is done, but not flawless."""
+    """A bowl just under the end effector's path is grazed; the plan is done, but not flawless."""
     station = build_station(robot, objects=[BOWL])
     p = arm.pose(timed.segments[0].q[-1])[:3, 3]
     X_WO = pose(np.eye(3), p)

@@ -12,6 +12,7 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from drake_screw.demonstrations import (
     Demonstration,
+    SegmentationConfig,
     demonstration_from_recording,
     read_library,
 )
@@ -63,7 +64,7 @@ def seven() -> Arm:
 
 @pytest.fixture(scope="session")
 def planar() -> Arm:
-    """Three joints about z, with links of 0.5 m and 0.4 m and a hand 0.1 m out."""
+    """Three joints about z, with links of 0.5 m and 0.4 m and an end effector 0.1 m out."""
     z = "0 0 1"
     return serial_arm([("0 0 0.2", z, 2.8), ("0.5 0 0", z, 2.6), ("0.4 0 0", z, 2.6)])
 
@@ -84,7 +85,7 @@ def recorded(shared: Path, calibrated_arm: Arm) -> Mapping[str, tuple[Demonstrat
     arm = calibrated_arm
     return {
         task: tuple(
-            demonstration_from_recording(recording, arm)
+            demonstration_from_recording(recording, arm, SegmentationConfig())
             for recording in read_library(
                 shared / "demos" / task, arm.joint_names, arm.lower, arm.upper
             )

@@ -359,6 +359,7 @@ def test_agrees_with_the_outcomes_on_record(
     np.testing.assert_array_equal(some.any_success, outcomes.any_success)
 
 
+@pytest.mark.slow
 def test_agrees_with_the_reference_on_recorded_tasks(
     shared: Path,
     calibrated_arm: Arm,

@@ -47,7 +47,7 @@ def placed(*places: np.ndarray) -> np.ndarray:
 
 
 def reaching(name: str, *p_OE: tuple[float, float, float]) -> Demonstration:
-    """Guiding poses at points over the bowl, the hand level and pointing along x."""
+    """Guiding poses at points over the bowl, the end effector level and pointing along x."""
     R_OE = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
     X_OE = pose(R_OE, np.array(p_OE))
     kept = np.arange(len(X_OE))

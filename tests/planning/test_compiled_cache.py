@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 PROGRAM = """
 import sys
 import numpy as np
@@ -78,6 +80,7 @@ def test_the_second_process_loads_what_the_first_compiled(tmp_path: Path) -> Non
     assert start(-0.25, **where) == (True, True, 1, file)
 
 
+@pytest.mark.slow
 def test_where_nothing_can_be_kept_it_works_all_the_same(tmp_path: Path) -> None:
     """A cache folder that cannot be made, be it on a read-only disk, gives way to the next."""
     (tmp_path / "file").touch()
@@ -110,6 +113,7 @@ for X_WO in (np.zeros((0, 1, 4, 4)), one[None], one[None]):
 """
 
 
+@pytest.mark.slow
 def test_whoever_waits_for_the_compiler_is_told_why(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", TOLD],

@@ -29,8 +29,8 @@ def chain_of(n: int, sliding: float, square: bool) -> tuple[ScrewChain, np.rando
             return chain, rng
 
 
-def about_hand(chain: ScrewChain, q: np.ndarray, V: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Jacobians (L, 6, n) and twists (L, 6) with the velocity of the hand's origin."""
+def about_E(chain: ScrewChain, q: np.ndarray, V: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Jacobians (L, 6, n) and twists (L, 6) with the velocity of the end effector's origin."""
     J, p = chain.jacobian(q).copy(), chain.pose(q)[:, :3, 3]
     V = V.copy()
     V[:, 3:] += np.cross(V[:, :3], p)
@@ -38,9 +38,9 @@ def about_hand(chain: ScrewChain, q: np.ndarray, V: np.ndarray) -> tuple[np.ndar
     return J, V
 
 
-def plain_rates(chain: ScrewChain, q: np.ndarray, V: np.ndarray) -> np.ndarray:
+def plain_velocities(chain: ScrewChain, q: np.ndarray, V: np.ndarray) -> np.ndarray:
     """J^+ V (L, n), damped as documented, of twists in W."""
-    J, V = about_hand(chain, q, V)
+    J, V = about_E(chain, q, V)
     Jt = np.swapaxes(J, 1, 2)
     if chain.n < 6:
         return np.linalg.solve(Jt @ J + DAMPING * np.eye(chain.n), Jt @ V[..., None])[..., 0]
@@ -48,7 +48,7 @@ def plain_rates(chain: ScrewChain, q: np.ndarray, V: np.ndarray) -> np.ndarray:
 
 
 def least_singular_value(chain: ScrewChain, q: np.ndarray) -> np.ndarray:
-    return np.linalg.svd(about_hand(chain, q, np.zeros((len(q), 6)))[0])[1].min(axis=-1)
+    return np.linalg.svd(about_E(chain, q, np.zeros((len(q), 6)))[0])[1].min(axis=-1)
 
 
 def configurations(b: Bench, rng: np.random.Generator) -> np.ndarray:
@@ -59,14 +59,14 @@ def configurations(b: Bench, rng: np.random.Generator) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("n", "sliding", "square"), KINDS)
-def test_rates(n: int, sliding: float, square: bool) -> None:
+def test_joint_velocities(n: int, sliding: float, square: bool) -> None:
     chain, rng = chain_of(n, sliding, square)
     b = bench(chain)
     q, V = configurations(b, rng), rng.normal(size=(L, 6))
     b.block[r.TWIST : r.TWIST + 6] = b.base_twist(V).T
     b.run("rate")
     got = b.block[b.rows.rate : b.rows.rate + n].T
-    want, s = plain_rates(chain, q, V), least_singular_value(chain, q)
+    want, s = plain_velocities(chain, q, V), least_singular_value(chain, q)
     clear = s > 1e-2
     error = np.abs(got - want).max(axis=1)[clear] * s[clear] ** 2
     assert (error < 1e-11).all()
@@ -97,10 +97,10 @@ def test_arrive_and_aim(n: int, sliding: float, square: bool) -> None:
         b.block[r.TWIST : r.TWIST + 6].T[clear], b.base_twist(V)[clear], atol=1e-9
     )
     np.testing.assert_allclose(b.block[rows.q : rows.q + n], q.T)
-    want = plain_rates(chain, q, V)
+    want = plain_velocities(chain, q, V)
     got = b.block[rows.slope(0) : rows.slope(0) + n].T
     np.testing.assert_allclose(got[clear], want[clear], rtol=1e-7, atol=1e-7)
-    J, V_E = about_hand(chain, q, V)
+    J, V_E = about_E(chain, q, V)
     rest = V_E - (J @ want[..., None])[..., 0]
     np.testing.assert_allclose(b.block[r.HAND][clear], (V_E**2).sum(axis=1)[clear], rtol=1e-9)
     tolerance = 1e-9 * (V_E**2).sum(axis=1)[clear]
@@ -161,10 +161,10 @@ def test_a_whole_step(n: int) -> None:
     b.run("judge")
 
     V = log(goal @ np.linalg.inv(chain.pose(q0)))
-    slopes = [plain_rates(chain, q0, V)]
+    slopes = [plain_velocities(chain, q0, V)]
     for weights in TABLEAU:
         moved = q0 + h[:, None] * sum(w * k for w, k in zip(weights, slopes, strict=True))
-        slopes.append(plain_rates(chain, moved, V))
+        slopes.append(plain_velocities(chain, moved, V))
     clear = least_singular_value(chain, q0) > 0.03
     assert clear.sum() >= 4
     np.testing.assert_allclose(
@@ -177,8 +177,8 @@ def test_a_whole_step(n: int) -> None:
     bound = RATE_LIMIT**2 * b.block[r.HAND]
     sure = clear & (np.abs(np.log(error / settings.tolerance)) > 0.01) & (speed.max(0) < bound)
     if n <= 6:
-        J = about_hand(chain, q0, V)[0]
-        inner = np.linalg.det(np.swapaxes(J, 1, 2) @ about_hand(chain, moved, V)[0])
+        J = about_E(chain, q0, V)[0]
+        inner = np.linalg.det(np.swapaxes(J, 1, 2) @ about_E(chain, moved, V)[0])
         sure &= inner > 0.0
     np.testing.assert_array_equal(
         b.block[r.ACCEPTED][sure], (error < settings.tolerance)[sure].astype(float)
@@ -227,7 +227,7 @@ def test_arms_that_are_redundant_in_a_plane(n: int, slides: tuple[int, ...]) -> 
     V = (chain.jacobian(q) @ rng.normal(size=(L, n, 1)))[..., 0]
     b.block[r.TWIST : r.TWIST + 6] = b.base_twist(V).T
     b.run("rate")
-    J, V_E = about_hand(chain, q, V)
+    J, V_E = about_E(chain, q, V)
     want = np.stack([np.linalg.pinv(j, rcond=1e-9) @ v for j, v in zip(J, V_E, strict=True)])
     got = b.block[b.rows.rate : b.rows.rate + n].T
     np.testing.assert_allclose(got, want, rtol=0, atol=1e-3)
@@ -236,7 +236,7 @@ def test_arms_that_are_redundant_in_a_plane(n: int, slides: tuple[int, ...]) -> 
 
 @pytest.mark.parametrize("n", [2, 4, 5, 6, 7])
 def test_the_world_may_be_seen_from_anywhere(n: int) -> None:
-    """Rates and residual do not depend on the frame, though few joints cannot give most twists."""
+    """Velocities do not depend on the frame, nor the residual that few joints leave of a twist."""
     chain, rng = chain_of(n, 0.3, False)
     X_VW = exp(rng.normal(size=6))
     moved = ScrewChain(
@@ -257,8 +257,8 @@ def test_the_world_may_be_seen_from_anywhere(n: int) -> None:
         b.run("aim")
         seen.append((b.block[b.rows.slope(0) : b.rows.slope(1)].copy(), b.block[r.RESIDUAL].copy()))
     clear = least_singular_value(chain, q) > 0.02
-    (rates, residual), (rates_moved, residual_moved) = seen
-    np.testing.assert_allclose(rates_moved[:, clear], rates[:, clear], rtol=1e-6, atol=1e-6)
+    (v, residual), (v_moved, residual_moved) = seen
+    np.testing.assert_allclose(v_moved[:, clear], v[:, clear], rtol=1e-6, atol=1e-6)
     np.testing.assert_allclose(residual_moved[clear], residual[clear], rtol=1e-6, atol=1e-9)
     if n < 6:
         assert (residual[clear] > 1e-4).all()

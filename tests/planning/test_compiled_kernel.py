@@ -166,7 +166,7 @@ def test_neither_chunks_nor_threads_matter_to_the_steps(
         assert x.tobytes() == y.tobytes()
 
 
-def test_a_plan_to_where_the_hand_is_takes_no_motion(
+def test_a_plan_to_where_the_end_effector_is_takes_no_motion(
     workcell: Workcell, baxter: Kernel, work: dict
 ) -> None:
     here = workcell.arm.pose(workcell.start)

@@ -27,7 +27,7 @@ def with_limits(arm: Arm, lower: np.ndarray, upper: np.ndarray) -> Arm:
 
 
 def nearby(arm: Arm, q: np.ndarray, seed: int, count: int, step: float = 0.25) -> np.ndarray:
-    """Hand poses of a random walk of the joints."""
+    """End-effector poses of a random walk of the joints."""
     steps = np.random.default_rng(seed).uniform(-step, step, (count, arm.n))
     return arm.pose(q + np.cumsum(steps, axis=0))
 

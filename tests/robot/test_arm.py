@@ -58,7 +58,7 @@ def test_pose_is_the_plants(arm: Arm) -> None:
         np.testing.assert_array_equal(arm.pose_and_jacobian(one)[0], X)
 
 
-def test_jacobian_is_the_velocity_of_the_hand(arm: Arm) -> None:
+def test_jacobian_is_the_velocity_of_the_end_effector(arm: Arm) -> None:
     rng = np.random.default_rng(1)
     step = 1e-6
     for q in rng.uniform(arm.lower, arm.upper, (5, arm.n)):
@@ -174,7 +174,7 @@ def test_a_joint_without_limits_is_refused() -> None:
         arm_of(joints)
 
 
-def test_a_joint_that_does_not_move_the_hand_is_refused() -> None:
+def test_a_joint_that_does_not_move_the_end_effector_is_refused() -> None:
     finger = JointText("finger", "0 0.1 0 0 0 0")
     plant = plant_of(sdf((*PLANAR, finger)))
     with pytest.raises(ModelError, match="'finger' does not move 'p3_link'"):

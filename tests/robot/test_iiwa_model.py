@@ -60,7 +60,7 @@ def touching(checker: SceneGraphCollisionChecker, q: np.ndarray) -> set[frozense
 
 
 def published_pose(q: np.ndarray) -> np.ndarray:
-    """The hand by the published offsets and axes; q (7,) to (4, 4)."""
+    """The end effector by the published offsets and axes; q (7,) to (4, 4)."""
     X = np.eye(4)
     for i in range(8):
         up = np.eye(4)
@@ -105,7 +105,7 @@ def test_stretched_out_it_is_as_long_as_the_data_sheet_says(arm: Arm) -> None:
     np.testing.assert_allclose(
         forward[:3, 3], [UPPER_ARM + FOREARM + FLANGE, 0, SHOULDER], atol=1e-12
     )
-    np.testing.assert_allclose(forward[:3, 2], [1, 0, 0], atol=1e-12)  # z points out of the hand
+    np.testing.assert_allclose(forward[:3, 2], [1, 0, 0], atol=1e-12)  # z points out of the tool
     chain = arm.screw_chain()
     assert chain.reach == pytest.approx(UPPER_ARM + FOREARM + FLANGE)
     np.testing.assert_allclose(chain.shoulder, [0, 0, SHOULDER], atol=1e-12)

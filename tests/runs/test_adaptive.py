@@ -54,6 +54,7 @@ def test_the_record_is_of_the_rounds_own_regions(whole) -> None:
     assert record["certificate"]["regions"] == told[-1].regions.K
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_resumes_to_the_same_result(whole, tmp_path) -> None:
     path, told = whole
     events = new_run(load_scenario("pouring", ADAPTIVE), tmp_path / "parts").events()

@@ -167,6 +167,7 @@ def test_the_run_directory_keeps_the_recordings_of_the_other_robot(
     assert (tried.failed_segment is None) == bool(found.success[0])
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_ends_as_if_it_had_not_been(
     finished: Path, changes: list[str], tmp_path: Path
 ) -> None:
@@ -323,6 +324,7 @@ def test_a_simulated_teacher_of_the_iiwa_leads_to_a_certificate(tmp_path: Path) 
     assert {entry["robot"] for entry in record["demonstrations"]} == {None}
 
 
+@pytest.mark.slow
 def test_people_who_led_baxter_teach_the_iiwa(shared: Path, tmp_path: Path) -> None:
     model = shared / "reference" / "baxter_left_calibrated.sdf"
     changes = [

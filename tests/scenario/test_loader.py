@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from drake_screw.demonstrations import FaithfulConfig, SegmentationConfig
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
-from drake_screw.scenario.loader import dump_scenario, load_scenario
+from drake_screw.scenario.loader import dump_scenario, load_scenario, load_stored_scenario
 from drake_screw.scenario.run_blocks import (
     AdaptiveBlock,
     CoverageBlock,
@@ -103,6 +103,38 @@ def test_shipped_scenarios_spell_out_the_defaults() -> None:
     assert scenario.demonstrations == DemonstrationsBlock()
     assert scenario.segmentation == SegmentationBlock()
     assert scenario.planner == PlannerBlock()
+
+
+@pytest.mark.parametrize("task", ["pouring", "scooping"])
+def test_the_papers_reading_is_shipped_and_does_not_move(task: str) -> None:
+    paper, ours = load_scenario(f"{task}_paper"), load_scenario(task)
+    assert paper.segmentation.config == SegmentationConfig(
+        spacing=0.005,
+        position_tolerance=0.015,
+        rotation_tolerance=0.15,
+        min_progress=0.001,
+        region_of_interest=1.5,
+    )
+    assert (paper.coverage.strategy, paper.cells) == ("naive_pac", ((4, 4, 1),))
+    assert (paper.coverage.beta, paper.coverage.epsilon, paper.coverage.delta) == (0.95, 0.02, 0.05)
+    assert not paper.planner.collision
+    for same in ("robot", "table", "objects", "teacher", "seed"):
+        assert getattr(paper, same) == getattr(ours, same), same
+
+
+def test_a_scenario_stored_before_segmentation_had_methods_is_read_as_published(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "scenario.yaml"
+    paper = load_scenario("pouring_paper")
+    file.write_text(dump_scenario(paper).replace("method: published, ", ""))
+    assert "published" not in file.read_text()
+    assert load_stored_scenario(file) == paper
+    with pytest.raises(ScenarioError, match="min_progress: the method faithful has no such key"):
+        load_scenario(file)
+    ours = load_scenario("pouring")
+    file.write_text(dump_scenario(ours))
+    assert load_stored_scenario(file) == ours
 
 
 def test_defaults_fill_what_is_left_out(write: Callable[..., Path]) -> None:
@@ -358,7 +390,7 @@ def test_unknown_name_lists_the_shipped_ones() -> None:
     error = error_of("pourng")
     assert error.message == "no scenario 'pourng'"
     assert error.remedy is not None
-    shipped = "pouring, pouring_iiwa, scooping"
+    shipped = "pouring, pouring_iiwa, pouring_paper, scooping, scooping_paper"
     assert error.remedy.startswith(f"Did you mean 'pouring'? Shipped scenarios: {shipped}.")
 
 
@@ -368,7 +400,7 @@ def test_missing_file_suggests_its_neighbour(write: Callable[..., Path]) -> None
     error = error_of(wrong)
     assert error.message == f"no file '{wrong}'"
     assert f"Did you mean '{file}'? " in (error.remedy or "")
-    assert "pouring, pouring_iiwa, scooping" in (error.remedy or "")
+    assert "pouring, pouring_iiwa, pouring_paper, scooping, scooping_paper" in (error.remedy or "")
 
 
 def test_missing_file_suggests_a_shipped_name() -> None:
@@ -669,19 +701,18 @@ def test_what_is_written_is_read_back(
 
 
 def test_each_method_of_segmentation_has_its_own_keys_and_defaults() -> None:
-    published = load_scenario("pouring").segmentation
+    published = load_scenario("pouring", ["segmentation.method=published"]).segmentation
     assert (published.method, published.config) == ("published", SegmentationConfig())
-    faithful = load_scenario(
-        "pouring", ["segmentation={method: faithful, reach: 0.5}"]
-    ).segmentation
-    assert faithful.config == FaithfulConfig(reach=0.5)
+    assert load_scenario("pouring").segmentation.config == FaithfulConfig()
+    faithful = load_scenario("pouring", ["segmentation.reach=0.5"]).segmentation
+    assert (faithful.method, faithful.config) == ("faithful", FaithfulConfig(reach=0.5))
     assert faithful.min_progress is None
     with pytest.raises(ScenarioError, match=r"min_progress: the method faithful has no"):
-        load_scenario("pouring", ["segmentation={method: faithful, min_progress: 0.1}"])
+        load_scenario("pouring", ["segmentation.min_progress=0.1"])
     with pytest.raises(ScenarioError, match=r"segmentation\.reach: the method published has no"):
-        load_scenario("pouring", ["segmentation.reach=0.1"])
+        load_scenario("pouring_paper", ["segmentation.reach=0.1"])
     with pytest.raises(ScenarioError, match="segmentation: spacing must be"):
-        load_scenario("pouring", ["segmentation={method: faithful, spacing: 0.1}"])
+        load_scenario("pouring", ["segmentation.spacing=0.1"])
     with pytest.raises(ScenarioError, match="there is no 'fathful'") as error:
         load_scenario("pouring", ["segmentation.method=fathful"])
     assert "Did you mean 'faithful'?" in str(error.value)

@@ -158,6 +158,7 @@ def test_an_interrupted_study_resumes_to_the_same_result(scenario, finished, tmp
     assert list(open_study(path).carry_out(1)) == []
 
 
+@pytest.mark.slow
 def test_workers_make_no_difference(scenario, finished, tmp_path) -> None:
     study = new_study(scenario, REGIONS, COUNT, tmp_path / "shared")
     found = list(study.carry_out(2))

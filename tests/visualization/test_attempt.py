@@ -74,7 +74,7 @@ def easy(workcell) -> Attempt:
 
 @pytest.fixture(scope="module")
 def limited(workcell) -> Attempt:
-    """The last joint turns about the hand's z axis: 3.05 rad to its limit, from 0."""
+    """The last joint turns about the end effector's z axis: 3.05 rad to its limit, from 0."""
     X = workcell.arm.pose(workcell.start)
     guides = [shift(-0.05, 0, 0) @ X]
     for _ in range(3):

@@ -50,7 +50,7 @@ def test_a_round_shows_all_its_parts(scene, meshcat, make_round, regions) -> Non
         "/rounds/01/weakest/line",
         "/rounds/01/next/bowl/object",
         "/rounds/01/next/bowl/ring",
-        "/demonstrations/01/hand",
+        "/demonstrations/01/path",
         "/demonstrations/02/guiding_poses/x",
         "/demonstrations/02/place/number",
         "/objects/bowl",

@@ -358,6 +358,10 @@ def test_a_page_is_not_overwritten_by_its_numbers(reader, tmp_path) -> None:
     with pytest.raises(DrakeScrewError, match="cannot be written"):
         save_page(reader, selection, tmp_path / "file" / "page.html")
     assert [file.name for file in tmp_path.iterdir()] == ["file"]
+    (tmp_path / "page.json").mkdir()
+    with pytest.raises(DrakeScrewError, match=r"page\.json: cannot be written: Is a directory"):
+        save_page(reader, selection, tmp_path / "page.html")
+    assert not (tmp_path / "page.html").exists()
 
 
 def test_whoever_stops_listening_at_the_end_leaves_a_finished_run(finished_run, tmp_path) -> None:

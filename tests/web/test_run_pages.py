@@ -149,11 +149,11 @@ def test_nonsense_does_not_move_the_arm() -> None:
     place = Suggestion(6, np.array([[0.85, 0.45, 0.0]]), 2)
     session = TeachingSession(setup, inspector, place, 0)
     for message in (
-        {"hand": 0, "value": float("nan")},
-        {"hand": 6, "value": 0.1},
+        {"pose": 0, "value": float("nan")},
+        {"pose": 6, "value": 0.1},
         {"joint": 7, "value": 0.1},
         {"joint": 0, "value": float("inf")},
-        {"hand": 3, "value": float("nan")},
+        {"pose": 3, "value": float("nan")},
         {"do": "accept"},
         {"do": "_restart"},
         {"do": 3},
@@ -162,7 +162,7 @@ def test_nonsense_does_not_move_the_arm() -> None:
         session.handle(message)
         assert not session.step(), message
     assert not session.over
-    session.handle({"hand": 3, "value": 1e300})
+    session.handle({"pose": 3, "value": 1e300})
     session.step()
     session.handle({"joint": 3, "value": 99.0})
     while session.step():

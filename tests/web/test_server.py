@@ -122,7 +122,7 @@ def test_addresses_are_checked_and_warned_of(server) -> None:
 
 @pytest.mark.parametrize("value", ["1e300", "NaN", "Infinity", "true", "[1, -1e10]", '{"a": 1}'])
 def test_numbers_that_no_slider_has_are_refused(server, value) -> None:
-    assert post(server, b'{"hand": 1, "value": ' + value.encode() + b"}") == 400
+    assert post(server, b'{"pose": 1, "value": ' + value.encode() + b"}") == 400
     assert server.message(0.0) is None
     assert post(server, b'{"at": [0.5, -1], "region": null, "do": "stop"}') == 204
 

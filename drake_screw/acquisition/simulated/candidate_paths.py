@@ -17,8 +17,8 @@ from drake_screw.robot import ScrewChain
 from drake_screw.screws import inverse, log, rotation_angle, sclerp, translation_distance
 from drake_screw.typing import Array
 
-STEP = 0.06  # rad, hand motion in one step
-METERS_PER_RADIAN = 0.5  # travel of the hand that takes as many steps as a turn by a radian
+STEP = 0.06  # rad, motion of the end effector in one step
+METERS_PER_RADIAN = 0.5  # travel of the end effector that takes as many steps as a turn by a radian
 DAMPING = 0.01
 MAX_JOINT_STEP = 0.25  # rad in one step; beyond it nobody could lead the arm
 ARRIVAL_TOLERANCE = (2e-3, 1e-2)  # m, rad
@@ -31,7 +31,7 @@ class CandidatePaths:
     Attributes:
         q: (c, m, n) rad or m.
         segment: (m,) the key pose, from 0, that each point leads to.
-        arrived: (c,) whether the hand came to every key pose without passing near a singularity.
+        arrived: (c,) whether it came to every key pose without passing near a singularity.
     """
 
     q: Array
@@ -45,7 +45,7 @@ def follow_key_poses(chain: ScrewChain, q_start: Array, X_WK: Array) -> Candidat
     Args:
         chain: the arm.
         q_start: (n,) rad or m.
-        X_WK: (c, g, 4, 4) key poses of the hand.
+        X_WK: (c, g, 4, 4) key poses of the end effector.
 
     Returns:
         The joint paths; limits are not looked at. They end early if no candidate is left.

@@ -36,7 +36,7 @@ class HandNoise:
     rotation: float
 
 
-# In the recordings the hand moves by 0.6 mm (mean norm) in the band of 2 to 10 Hz.
+# In the recordings the end effector moves by 0.6 mm (mean norm) in the band of 2 to 10 Hz.
 DRIFT = HandNoise((0.05, 0.5), 0.0025, 0.010)
 TREMOR = HandNoise((2.0, 10.0), 0.00035, 0.0015)
 
@@ -62,7 +62,7 @@ def timed(
     Args:
         q: (m, n) rad or m.
         segment: (m,) as in `candidate_paths.CandidatePaths`.
-        X_WE: (m, 4, 4) the hand along the path.
+        X_WE: (m, 4, 4) the end effector along the path.
         pauses: shortest and longest stop after each segment, s.
         speed_limits: (n,) rad/s or m/s.
         rng: for tempo, stops, and the length of pauses.

@@ -1,9 +1,9 @@
-"""What people do with their hand at a bowl: pouring and scooping, as key poses of the hand.
+"""What people do with an arm at a bowl: pouring and scooping, as key poses of its end effector.
 
 The numbers follow 32 kinesthetic demonstrations on a Baxter, 16 of each motion, spread evenly over
-a work area of 0.37 m by 1.02 m: where the hand is, how it is turned and how much that varies at the
-guiding poses found in them, rounded; and estimates for what guiding poses do not show (the arc of
-the roll, how long people stop).
+a work area of 0.37 m by 1.02 m: where the end effector is, how it is turned and how much that
+varies at the guiding poses found in them, rounded; and estimates for what guiding poses do not show
+(the arc of the roll, how long people stop).
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ class Variation:
 
 @dataclass(frozen=True)
 class HandPath:
-    """Key poses of the hand, each relative to the object and the direction of approach.
+    """Key poses of the end effector, each relative to the object and the direction of approach.
 
     Arrays are (c, g), for c candidates and g key poses, or broadcast to it.
 
     Attributes:
-        behind: m, from the hand forward to the object's axis, along the approach.
+        behind: m, from the end effector forward to the object's axis, along the approach.
         left: m, of the object's axis, seen along the approach.
         height: m, above the object's origin.
-        pitch: rad, of the hand's z axis below the horizon.
-        roll: rad, about the hand's z axis, from how the hand is held at the start.
+        pitch: rad, of the end effector's z axis below the horizon.
+        roll: rad, about the end effector's z axis, from how it is held at the start.
         pause: (g,) s, the shortest and the longest time that people stop at each key pose.
         held: (c,) m, by how much the tool is held longer than usual.
     """
@@ -134,7 +134,7 @@ def tool_lengths(rng: np.random.Generator, count: int, *, stretched: bool) -> Ar
     """By how much people hold the tool longer than usual; (count,) m.
 
     At most places by little. Where they cannot reach otherwise (`stretched`), by up to 0.14 m, as
-    in the far corners of the recordings, where bowl and hand are up to 0.28 m apart.
+    in the far corners of the recordings, where bowl and end effector are up to 0.28 m apart.
     """
     if stretched:
         return rng.uniform(0.05, 0.14, count)
@@ -142,13 +142,13 @@ def tool_lengths(rng: np.random.Generator, count: int, *, stretched: bool) -> Ar
 
 
 def usual_azimuth(X_WE: Array, p_WO: Array) -> float:
-    """The direction from which people bring their hand to an object, of its z axis about W's.
+    """The direction from which people bring the end effector to an object, of its z axis about W's.
 
     They push it on the straight way from where it rests to the object, turned by an eighth of the
     way towards where it points at rest: 5 degrees on average over the recordings.
 
     Args:
-        X_WE: (4, 4) the hand at rest.
+        X_WE: (4, 4) the end effector at rest.
         p_WO: (3,) m.
 
     Returns:
@@ -177,7 +177,7 @@ def hand_poses(path: HandPath, azimuth: Array, X_WE: Array, p_WO: Array) -> Arra
     Args:
         path: c candidates of g key poses.
         azimuth: (c,) rad, direction of approach.
-        X_WE: (4, 4) the hand at rest, from which rolls are counted.
+        X_WE: (4, 4) the end effector at rest, from which rolls are counted.
         p_WO: (3,) m, the object.
 
     Returns:

@@ -41,7 +41,7 @@ TRAVEL_WEIGHT = 0.03  # rad of margin that people give up to save a radian of jo
 class _Rehearsal:
     """Candidate ways as tried out, and how comfortable each was; -inf where it does not work."""
 
-    hand: HandPath
+    keys: HandPath
     paths: CandidatePaths
     comfort: Array
     within: NDArray[np.bool_]
@@ -56,8 +56,8 @@ class SimulatedTeacher:
     side, the tool held as usual. Where none works it thinks again, with the tool held longer. It
     does not ask the planner, nor knows what other places the demonstration will serve.
 
-    The motion is that of the hand relative to the first object, and takes the end effector's z
-    axis to point out of the hand. The table must be level.
+    The motion is that of the end effector relative to the first object, and takes its z axis to
+    point out of the tool. The table must be level.
 
     Args:
         workcell: the arm and what it may collide with.
@@ -121,21 +121,21 @@ class SimulatedTeacher:
 
     def _rehearse(self, X_WO: Array, rng: np.random.Generator, *, stretched: bool) -> _Rehearsal:
         rest, p_WO = self._chain.pose(self.workcell.start), X_WO[0, :3, 3]
-        hand = self._motion(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
+        keys = self._motion(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
         aside = azimuth_deviations(rng, CANDIDATES)
-        X_WK = hand_poses(hand, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
+        X_WK = hand_poses(keys, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
         paths = follow_key_poses(self._chain, self.workcell.start, X_WK)
         margin = self.workcell.arm.margin(paths.q).min(axis=(1, 2))
         within = margin >= MARGIN
         travel = np.linalg.norm(np.diff(paths.q, axis=1), axis=-1).sum(axis=1)
         comfort = (
             np.minimum(margin, COMFORTABLE_MARGIN)
-            - hand.held
+            - keys.held
             - AZIMUTH_WEIGHT * aside**2
             - TRAVEL_WEIGHT * travel
         )
         comfort += rng.normal(0.0, 0.02, CANDIDATES)
-        return _Rehearsal(hand, paths, np.where(paths.arrived & within, comfort, -np.inf), within)
+        return _Rehearsal(keys, paths, np.where(paths.arrived & within, comfort, -np.inf), within)
 
     def _perform(self, rehearsal: _Rehearsal, choice: int, rng: np.random.Generator) -> Array:
         q = rehearsal.paths.q[choice]
@@ -143,7 +143,7 @@ class SimulatedTeacher:
             q,
             rehearsal.paths.segment,
             self._chain.pose(q),
-            rehearsal.hand.pause,
+            rehearsal.keys.pause,
             self.workcell.arm.velocity_limits,
             rng,
         )

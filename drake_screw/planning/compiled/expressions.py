@@ -202,7 +202,7 @@ class Program:
     nodes: tuple[Node, ...]
 
     def __str__(self) -> str:
-        """A listing, which tells programs that do different things apart."""
+        """A listing, in which programs that do different things differ."""
         names: dict[Node, str] = {}
         lines, unused = [self.name], count()
         for node in self.nodes:

@@ -50,7 +50,8 @@ class Bounds(NamedTuple):
 
     Attributes:
         limits: (2, n) lower and upper joint limits.
-        rate2, residual2: squares of the bounds on |dq/ds| and on the residual, per hand motion.
+        rate2, residual2: squares of the bounds on |dq/ds| and on the residual, per unit of
+            end-effector motion.
         step: of s, at least.
     """
 
@@ -241,7 +242,7 @@ def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     """What the event of a lane means.
 
     Where a step ends beyond the bound on |dq/ds|, 1 / |dq/ds|^2 is taken to fall linearly, as it
-    does at the end of the arm's reach, to tell whether a joint reaches its limit before.
+    does at the end of the arm's reach, to decide whether a joint reaches its limit before.
 
     Returns:
         cause (-1: the plan goes on), joint, fraction of the segment, part of the step.

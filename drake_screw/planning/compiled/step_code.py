@@ -69,10 +69,11 @@ class Settings:
         motion: bound on the motion of a joint in a step, rad.
         first_motion: the same for the first step of a segment.
         approach: part of the way to the next singularity that a step may take. At the end of the
-            arm's reach, at s*, |dq/ds|^2 grows as 1 / (s* - s), so that two values of it tell s*.
+            arm's reach, at s*, |dq/ds|^2 grows as 1 / (s* - s), so that s* follows from two values.
         step_min: of s; where smaller steps are needed the end effector cannot follow.
-        rate_max: bound on |dq/ds| per hand motion (see `contract.hand_motion`), rad.
-        residual_max: bound on the part of the hand motion that the joints cannot give.
+        rate_max: bound on |dq/ds| per unit of end-effector motion (see `contract.motion_size`),
+            rad.
+        residual_max: bound on the part of the end-effector motion that the joints cannot give.
     """
 
     tolerance: float = 1e-4

@@ -25,9 +25,9 @@ BEND = (
     -1453857185 / 822651844,
     69997945 / 29380423,
 )
-"""Weights of the rates at a step's seven stages in the fourth-order continuous extension of Dormand
-and Prince's pair: Shampine, "Some practical Runge-Kutta formulas" (1986); Hairer, Norsett and
-Wanner, Solving Ordinary Differential Equations I, section II.6."""
+"""Weights of the velocities at a step's seven stages in the fourth-order continuous extension of
+Dormand and Prince's pair: Shampine, "Some practical Runge-Kutta formulas" (1986); Hairer, Norsett
+and Wanner, Solving Ordinary Differential Equations I, section II.6."""
 
 
 class Trace(NamedTuple):
@@ -39,7 +39,7 @@ class Trace(NamedTuple):
         segment: (T,) the segment that a step lies in, from 0.
         s: (T, 2) at its start and its end; 1 at both in a correction at a segment's end.
         part: (T,) how much of it the plan goes along: all of it, 1, unless it fails there.
-        q: (T, 5, n) joint positions at its start and end; the rates there, and `BEND` of the rates
+        q: (T, 5, n) joint positions at its start and end; the velocities there, and `BEND` of those
             at all stages, each times the step.
     """
 

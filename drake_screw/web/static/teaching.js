@@ -22,8 +22,8 @@ function slider(table, name, low, high, changed) {
 // While nobody is asked for anything, the lists of a state are empty.
 function build(state) {
   rows = {
-    hand: state.hand.map((h, i) => slider(element("hand"), h.name, h.low, h.high,
-      (value) => send({ hand: i, value }))),
+    pose: state.pose.map((h, i) => slider(element("pose"), h.name, h.low, h.high,
+      (value) => send({ pose: i, value }))),
     arm: state.joints.map((j, i) => slider(element("arm"), j.name, j.low, j.high,
       (value) => send({ joint: i, value }))),
   };
@@ -40,8 +40,8 @@ listen((state) => {
     button.disabled = !state.can.includes(button.dataset.do);
     button.onclick = () => send({ do: button.dataset.do });
   }
-  state.hand.forEach((h, i) => {
-    const row = rows.hand[i];
+  state.pose.forEach((h, i) => {
+    const row = rows.pose[i];
     if (!dragging.has(row.input)) row.input.value = h.value;
     row.value.textContent = h.value.toFixed(3) + " " + h.unit;
     row.input.disabled = !state.leading;
