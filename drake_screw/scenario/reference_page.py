@@ -56,7 +56,9 @@ The smallest file that runs has just the keys without a default:
 Save it as `my_pouring.yaml`, look at it with `drake-screw check my_pouring.yaml`, and run it with
 `drake-screw run my_pouring.yaml`. The shipped scenarios, [pouring](../scenarios/pouring.yaml) and
 [scooping](../scenarios/scooping.yaml), explain every key; `drake-screw init` writes a copy to start
-from.
+from. [pouring_paper](../scenarios/pouring_paper.yaml) and
+[scooping_paper](../scenarios/scooping_paper.yaml) read the tasks as the paper does, whatever
+becomes of the defaults.
 
 - Lengths are in metres, angles in radians. The world's frame is the frame `robot.base`, z up.
 - A path in the file is relative to the file; `~` is your home folder.
