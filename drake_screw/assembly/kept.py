@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from drake_screw.acquisition import RecordedTeacher
 from drake_screw.assembly.setup import Setup
-from drake_screw.demonstrations import NoMotionKept, Recording
+from drake_screw.demonstrations import Recording
 
 
 def named_recordings(setup: Setup) -> tuple[Recording, ...]:
@@ -29,13 +29,4 @@ def kept(setup: Setup, recordings: Sequence[Recording]) -> tuple[str, ...]:
     For example ``demo_07: 7 guiding poses of the bowl; kept to 6 mm and 0.08 rad; turn 1.36 of 1.38
     rad``.
     """
-    lines = []
-    for recording in recordings:
-        try:
-            learned = setup.learn(recording)
-        except NoMotionKept as error:
-            lines.append(f"{recording.name}: not used: {error.message}")
-        else:
-            words = "; ".join(map(str, (*learned.fidelity, *learned.notes)))
-            lines.append(f"{recording.name}: {words}")
-    return tuple(lines)
+    return tuple(str(setup.look(recording)) for recording in recordings)

@@ -19,9 +19,11 @@ from pydrake.multibody.plant import MultibodyPlant
 from drake_screw.demonstrations import (
     Demonstration,
     FaithfulConfig,
+    Look,
     Recording,
     SegmentationConfig,
     demonstration_from_recording,
+    look_at,
     read_library,
 )
 from drake_screw.demonstrations.library import JOINTS
@@ -149,13 +151,33 @@ class Recorder:
             recording,
             self.arm,
             learning.segmentation,
-            names=[item.name for item in self.area.objects],
+            names=self._names,
+            task_objects=learning.task_objects,
+        )
+        return learned if self.robot is None else _moved(learned, self._shift(recording))
+
+    def look(self, recording: Recording, learning: Learning) -> Look:
+        """What the recording holds, its poses in the world as `seen`.
+
+        Raises:
+            RecordingError: it names an object that there is not.
+        """
+        look = look_at(
+            recording,
+            self.arm,
+            learning.segmentation,
+            names=self._names,
             task_objects=learning.task_objects,
         )
         if self.robot is None:
-            return learned
+            return look
         X = self._shift(recording)
-        return replace(learned, X_WO=X @ learned.X_WO, path=X @ learned.path)
+        found = None if look.demonstration is None else _moved(look.demonstration, X)
+        return replace(look, X_WE=X @ look.X_WE, X_WO=X @ look.X_WO, demonstration=found)
+
+    @property
+    def _names(self) -> list[str]:
+        return [item.name for item in self.area.objects]
 
     @property
     def _k(self) -> int:
@@ -224,6 +246,11 @@ class ForeignRecordings:
         demonstrations = [self._learned[_key(recording)] for recording in recordings]
         X_WO = self.recorder.area.X_WO(x_y_yaw)[None]
         return self.planner.all_outcomes(demonstrations, X_WO, self.start).success[0]
+
+
+def _moved(learned: Demonstration, X: Array) -> Demonstration:
+    """A demonstration seen from another place; X (4, 4)."""
+    return replace(learned, X_WO=X @ learned.X_WO, path=X @ learned.path)
 
 
 def _key(recording: Recording) -> tuple[Path | None, str]:

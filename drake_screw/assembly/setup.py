@@ -16,7 +16,7 @@ from drake_screw.acquisition.simulated import Motion
 from drake_screw.assembly.recorder import Learning, Recorder
 from drake_screw.assembly.sanity import check_reach, check_start
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
-from drake_screw.demonstrations import Demonstration, Recording
+from drake_screw.demonstrations import Demonstration, Look, Recording
 from drake_screw.planning import BatchPlanner, Outcomes, Planner
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.plugins import find
@@ -285,3 +285,11 @@ class Setup:
             NoMotionKept: next to nothing of what was shown near an object would be kept.
         """
         return self.recorder_of(recording.robot).learn(recording, self.learning)
+
+    def look(self, recording: Recording) -> Look:
+        """What a recording holds and what is learned from it, or why it is refused.
+
+        Raises:
+            RecordingError: it names an object that there is not.
+        """
+        return self.recorder_of(recording.robot).look(recording, self.learning)

@@ -11,8 +11,7 @@ from rich.console import Console
 from drake_screw.errors import DrakeScrewError
 
 STANDARD_OUTPUT = "-"
-
-_REMEDY = "Give --json a file in a folder that exists and that you may write to, or -."
+JSON = "--json"
 
 
 class Output:
@@ -33,7 +32,7 @@ class Output:
         self.console = Console(stderr=json == STANDARD_OUTPUT)
         self._json = json
         if json is not None and json != STANDARD_OUTPUT:
-            _check(Path(json))
+            check_writable(Path(json), JSON)
 
     def say(self, text: object) -> None:
         """Print words as they are, however long."""
@@ -68,18 +67,33 @@ class Output:
             return
         from drake_screw.files import write_text, writing
 
-        with writing(Path(self._json), _REMEDY):
+        with writing(Path(self._json), writable(JSON)):
             write_text(Path(self._json), text)
 
 
-def _check(file: Path) -> None:
+def check_writable(file: Path, option: str) -> None:
+    """Refuse a file that cannot be written, before the work is done.
+
+    Args:
+        file: that an option names.
+        option: its name, such as ``--html``.
+
+    Raises:
+        DrakeScrewError: there cannot be such a file.
+    """
     if file.is_dir():
-        raise _unwritable(file, "it is a folder")
+        raise _unwritable(file, option, "it is a folder")
     if not file.parent.is_dir():
-        raise _unwritable(file, f"there is no folder '{file.parent}'")
+        raise _unwritable(file, option, f"there is no folder '{file.parent}'")
     if not os.access(file.parent, os.W_OK):
-        raise _unwritable(file, "its folder is read-only")
+        raise _unwritable(file, option, "its folder is read-only")
 
 
-def _unwritable(file: Path, why: str) -> DrakeScrewError:
-    return DrakeScrewError(f"cannot be written: {why}", remedy=_REMEDY, file=file)
+def writable(option: str) -> str:
+    """What to do about a file that an option names and that cannot be written."""
+    other = ", or -" if option == JSON else ""
+    return f"Give {option} a file in a folder that exists and that you may write to{other}."
+
+
+def _unwritable(file: Path, option: str, why: str) -> DrakeScrewError:
+    return DrakeScrewError(f"cannot be written: {why}", remedy=writable(option), file=file)

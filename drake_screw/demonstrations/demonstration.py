@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from drake_screw.demonstrations.deviations import Deviations, deviations_from_screws
 from drake_screw.demonstrations.faithful import FaithfulConfig, faithful_guiding_poses
 from drake_screw.demonstrations.fidelity import Fidelity, fidelity
 from drake_screw.demonstrations.recording import Recording
 from drake_screw.demonstrations.refusal import require_motion
 from drake_screw.demonstrations.regions import Regions
 from drake_screw.demonstrations.segmentation import SegmentationConfig, guiding_poses
-from drake_screw.errors import RecordingError, suggestion
+from drake_screw.demonstrations.shown import Shown, what_is_shown
 from drake_screw.typing import Array
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ class Demonstration:
         kept: (g,) indices of the guiding poses in `path`.
         fidelity: how faithfully they keep what was shown, for each object of the task.
         notes: what else should be known, in words: which objects are bystanders.
+        deviations: the samples that are kept near each of these objects, and how far each is from
+            the screws.
     """
 
     name: str
@@ -45,6 +48,7 @@ class Demonstration:
     kept: NDArray[np.int64]
     fidelity: tuple[Fidelity, ...] = ()
     notes: tuple[str, ...] = ()
+    deviations: tuple[Deviations, ...] = ()
 
     def transfer(self, X_WO: ArrayLike) -> Array:
         """Guiding poses for objects elsewhere: X_WE' = X_WO' X_OE.
@@ -83,17 +87,23 @@ def demonstration_from_recording(
         RecordingError: an object of the task has a name that no object has.
     """
     config = config or FaithfulConfig()
-    if recording.region_of_interest is not None:
-        config = replace(config, region_of_interest=recording.region_of_interest)
-    count = len(recording.X_WO)
-    names = [f"object {i + 1}" for i in range(count)] if names is None else list(names)
-    named = _indices(recording, names, recording.task_objects or task_objects)
-    X_WE, X_WO, t = arm.pose(recording.q), recording.X_WO, recording.t
-    measure = config if isinstance(config, FaithfulConfig) else FaithfulConfig()
-    regions = measure.regions(X_WE, X_WO, named)
+    return demonstration_of(
+        what_is_shown(recording, arm, config, names=names, task_objects=task_objects)
+    )
+
+
+def demonstration_of(shown: Shown) -> Demonstration:
+    """Segmentation of what a recording shows.
+
+    Raises:
+        NoMotionKept: faithful segmentation keeps no motion of it, and says why.
+    """
+    recording, config, measure = shown.recording, shown.config, shown.measure
+    X_WE, X_WO, t, names = shown.X_WE, recording.X_WO, recording.t, shown.names
+    regions = shown.regions
     notes: tuple[str, ...] = ()
     if isinstance(config, FaithfulConfig):
-        found = faithful_guiding_poses(X_WE, X_WO, config, t=t, named=named)
+        found = faithful_guiding_poses(X_WE, X_WO, config, t=t, named=shown.named)
         _, owners, kept = found
         file = recording.source
         require_motion(X_WE, t, X_WO, owners, kept, regions, names, config, file=file)
@@ -101,21 +111,11 @@ def demonstration_from_recording(
     else:
         found = guiding_poses(X_WE, X_WO, config)
     X_OE, owners, kept = found
-    kept_well = fidelity(X_WE, t, X_WO, X_OE, owners, names, measure, regions=regions)
-    return Demonstration(recording.name, X_OE, owners, X_WO, X_WE, kept, kept_well, notes)
-
-
-def _indices(recording: Recording, names: Sequence[str], wanted: Sequence[str]) -> list[int] | None:
-    if not wanted:
-        return None
-    for name in wanted:
-        if name not in names:
-            raise RecordingError(
-                f"no object '{name}' to work on",
-                remedy=suggestion(name, names, "Objects"),
-                file=recording.source,
-            )
-    return [names.index(name) for name in wanted]
+    away = deviations_from_screws(X_WE, X_WO, X_OE, owners, measure, regions=regions)
+    kept_well = fidelity(
+        X_WE, t, X_WO, X_OE, owners, names, measure, regions=regions, deviations=away
+    )
+    return Demonstration(recording.name, X_OE, owners, X_WO, X_WE, kept, kept_well, notes, away)
 
 
 def _bystanders(regions: Regions, names: Sequence[str]) -> tuple[str, ...]:

@@ -91,6 +91,12 @@ class Arm:
         """Number of joints."""
         return len(self.joint_names)
 
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The unit of each joint's position, "rad" or "m"."""
+        kinds = (self.plant.GetJointByName(name).type_name() for name in self.joint_names)
+        return tuple("rad" if kind == "revolute" else "m" for kind in kinds)
+
     def full_positions(self, q: ArrayLike) -> Array:
         """Positions of the whole plant; q (..., n) rad or m to (..., plant.num_positions())."""
         q = np.asarray(q, dtype=float)

@@ -16,11 +16,11 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import PercentFormatter
 
 from drake_screw.tasks import GridRegions
+from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
     add_colour_bar,
     draw_heat_map,
     legend_handles,
-    save_figure,
 )
 from drake_screw.visualization.palette import INK, failure_map
 from drake_screw.visualization.rounds import Round, cells

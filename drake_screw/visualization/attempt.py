@@ -13,12 +13,9 @@ from drake_screw.planning import Cause, Outcomes, Plan
 from drake_screw.robot import Arm
 from drake_screw.screws import Screw, screw_between
 from drake_screw.typing import Array
+from drake_screw.visualization.screw_drawing import STRAIGHT, axis_distance, looks_straight
 
 DONE, FAILED, AHEAD = "done", "failed", "never reached"
-FAR_AXIS = 1.0
-"""m. A screw whose axis lies farther from the end effector than this looks straight."""
-STRAIGHT = 0.02
-"""rad. A screw that turns less than this looks straight, too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,15 +89,11 @@ class Attempt:
 
     def axis_distance(self, segment: int) -> float:
         """Distance in m of the end effector's path in a segment from its screw's axis."""
-        screw = self.screws
-        middle = (self.starts[segment, :3, 3] + self.guides[segment, :3, 3]) / 2.0
-        across = np.cross(middle - screw.point[segment], screw.axis[segment])
-        return float(np.linalg.norm(across))
+        return axis_distance(self.starts[segment], self.guides[segment])
 
     def straight(self, segment: int) -> bool:
         """Whether a segment looks like a translation: it hardly turns, or about a far axis."""
-        turns = float(self.screws.angle[segment])
-        return turns < STRAIGHT or self.axis_distance(segment) > FAR_AXIS
+        return looks_straight(self.starts[segment], self.guides[segment])
 
     def samples(self, most: int) -> NDArray[np.int64]:
         """Indices (p,) of about `most` points of the plan, the ends of all segments among them."""
@@ -156,7 +149,7 @@ def headline(attempt: Attempt) -> str:
         joint, margin = attempt.tightest
         return (
             f"succeeds in all {total} screw segments; {arm.joint_names[joint]} comes nearest to a "
-            f"limit, {margin:.3f} {unit(arm, joint)} away"
+            f"limit, {margin:.3f} {arm.units[joint]} away"
         )
     segment, fraction = int(plan.outcome.segment), float(plan.outcome.fraction)
     where = f"in screw segment {segment + 1} of {total}, {fraction:.1%} along it"
@@ -167,7 +160,7 @@ def headline(attempt: Attempt) -> str:
             which, limit = "upper", arm.upper[joint]
         return (
             f"fails {where}: {arm.joint_names[joint]} reaches its {which} limit, "
-            f"{limit:.3f} {unit(arm, joint)}".replace("-", "−")
+            f"{limit:.3f} {arm.units[joint]}".replace("-", "−")
         )
     if attempt.cause == Cause.COLLISION:
         touching = "; ".join(f"{a} touches {b}" for a, b in attempt.bodies[:2])
@@ -192,9 +185,3 @@ def describe_segment(attempt: Attempt, segment: int) -> str:
     pitch = float(screw.pitch[segment]) * 2.0 * np.pi
     text = f"{turn}, {along * 100:+.1f} cm along the axis, pitch {pitch * 100:+.0f} cm/turn"
     return text.replace("-", "−")
-
-
-def unit(arm: Arm, joint: int) -> str:
-    """The unit of a joint's position."""
-    revolute = arm.plant.GetJointByName(arm.joint_names[joint]).type_name() == "revolute"
-    return "rad" if revolute else "m"

@@ -9,7 +9,6 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -22,6 +21,7 @@ from matplotlib.patheffects import withStroke
 from drake_screw.planning import Cause
 from drake_screw.tasks import Regions
 from drake_screw.visualization.cell_text import MARK, write_estimates
+from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -125,15 +125,6 @@ def save_heat_map(
         The two files.
     """
     return save_figure(heat_map_figure(event, regions, scenario=scenario, dots=dots), stem)
-
-
-def save_figure(figure: Figure, stem: str | Path) -> tuple[Path, Path]:
-    """Write a figure as ``<stem>.png`` and ``<stem>.svg`` without date, program or random ids."""
-    png, svg = Path(f"{stem}.png"), Path(f"{stem}.svg")
-    with mpl.rc_context({"svg.hashsalt": "drake_screw", "svg.fonttype": "path"}):
-        figure.savefig(png, dpi=160, metadata={"Software": None}, facecolor=PAPER)
-        figure.savefig(svg, metadata={"Date": None, "Creator": None}, facecolor=PAPER)
-    return png, svg
 
 
 def add_colour_bar(figure: Figure, ax: Axes) -> None:

@@ -15,16 +15,15 @@ import numpy as np
 from pydrake.geometry import Meshcat
 
 from drake_screw.robot import ObjectConfig, Workcell
-from drake_screw.screws import sclerp_position
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes, screw_shapes
-from drake_screw.visualization.attempt import AHEAD, FAILED, Attempt, unit
+from drake_screw.visualization.attempt import AHEAD, FAILED, Attempt
 from drake_screw.visualization.drawing import draw, draw_frames
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
+from drake_screw.visualization.screw_drawing import draw_screw, screw_track
 
 BOWL = "#f4c95d"
-AXIS = "#5b3fa8"
 GHOST_OPACITY, AHEAD_OPACITY = 0.22, 0.35
 SAMPLES = 120
 DIAL = (0.110, 0.145)
@@ -90,7 +89,9 @@ class Inspector:
         self.meshcat.Delete(path)
         for segment, status in enumerate(attempt.status):
             self._draw_segment(f"{path}/segments/{segment + 1:02d}", attempt, segment, status)
-            self._draw_axis(f"{path}/axes/{segment + 1:02d}", attempt, segment)
+            X_WA, X_WB = attempt.starts[segment], attempt.guides[segment]
+            color = STATUS_COLORS[status]
+            draw_screw(self.meshcat, f"{path}/axes/{segment + 1:02d}", X_WA, X_WB, color)
         draw_frames(self.meshcat, f"{path}/frames", attempt.guides, size=0.045)
         samples = attempt.samples(SAMPLES)
         q = attempt.plan.q[samples]
@@ -112,55 +113,20 @@ class Inspector:
         fraction = float(attempt.plan.outcome.fraction) if status == FAILED else 1.0
         ends = {"way": (0.0, fraction), "rest": (fraction, 1.0)}
         for name, (first, last) in ends.items():
-            track = self._track(attempt, segment, first, last)
+            X_WA, X_WB = attempt.starts[segment], attempt.guides[segment]
+            track = screw_track(X_WA, X_WB, first, last)
             if len(track) < 2:
                 continue
             thin = name == "rest" or status == AHEAD
             line = meshes.tube(track, 0.006 if thin else 0.012, sides=8)
             draw(self.meshcat, f"{path}/{name}", line, color, AHEAD_OPACITY if thin else 1.0)
 
-    def _track(self, attempt: Attempt, segment: int, first: float, last: float) -> Array:
-        s = np.linspace(first, last, 41)
-        p_WE = sclerp_position(attempt.starts[segment], attempt.guides[segment], s)
-        keep = np.append(True, np.linalg.norm(np.diff(p_WE, axis=0), axis=1) > 1e-6)
-        return p_WE[keep] if last > first else p_WE[:0]
-
-    def _draw_axis(self, path: str, attempt: Attempt, segment: int) -> None:
-        """The axis with a helix around it that shows angle, sense and pitch of the screw.
-
-        A segment that looks straight gets an arrow beside the end effector's path instead.
-        """
-        screw = attempt.screws
-        axis, point = screw.axis[segment], screw.point[segment]
-        p_A, p_B = attempt.starts[segment, :3, 3], attempt.guides[segment, :3, 3]
-        if attempt.straight(segment):
-            lift = np.array([0.0, 0.0, 0.03])
-            if np.linalg.norm(p_B - p_A) > 0.01:
-                line = screw_shapes.arrow(p_A + lift, p_B + lift, 0.005)
-                draw(self.meshcat, f"{path}/direction", line, AXIS)
-            return
-        translation = float(screw.translation[segment])
-        begin = point + axis * (axis @ (p_A - point))
-        low, high = min(translation, 0.0), max(translation, 0.0)
-        line = screw_shapes.arrow(begin + (low - 0.11) * axis, begin + (high + 0.13) * axis, 0.006)
-        draw(self.meshcat, f"{path}/axis", line, AXIS)
-        across = p_A - begin
-        length = float(np.linalg.norm(across))
-        first = across / length if length > 1e-6 else screw_shapes.along(axis)[:, 0]
-        angle = float(screw.angle[segment])
-        helix = screw_shapes.turning(axis, begin, first, angle, translation, 0.006)
-        status = attempt.status[segment]
-        draw(self.meshcat, f"{path}/turn", helix, STATUS_COLORS[status])
-        if length > screw_shapes.RADIUS:
-            spoke = meshes.tube([begin, p_A], 0.002)
-            draw(self.meshcat, f"{path}/spoke", spoke, AXIS, 0.4)
-
     def _draw_dial(self, path: str, attempt: Attempt, joint: int, q: Array) -> dict[str, Array]:
         """The range of a joint as a dial around it, its limits, and a needle where it stands."""
         arm = attempt.arm
         X_WJ = self.linkage.joint_frames(joint, q)
         color = STATUS_COLORS[FAILED]
-        if unit(arm, joint) != "rad":
+        if arm.units[joint] != "rad":
             mark = meshes.ring(DIAL[1], 0.014)
             draw(self.meshcat, f"{path}/mark", mark, color)
             return {f"{path}/mark": X_WJ}

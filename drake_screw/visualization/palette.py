@@ -49,6 +49,10 @@ INK = "#1c1b22"
 PAPER = "#ffffff"
 UNKNOWN = "#d9d9d9"
 """A region without samples."""
+QUIET = "#8a8a8a"
+"""What is there, but does not count."""
+OBJECT_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9")
+"""Of objects, in their order (Okabe and Ito)."""
 
 
 def failure_map() -> Colormap:

@@ -12,11 +12,11 @@ from matplotlib.ticker import MaxNLocator
 
 from drake_screw.planning import Cause
 from drake_screw.tasks import Regions
+from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
     add_colour_bar,
     draw_heat_map,
     legend_handles,
-    save_figure,
 )
 from drake_screw.visualization.palette import INK, OUTCOME_COLORS, failure_map
 from drake_screw.visualization.rounds import Round, Sample, cells

@@ -11,7 +11,7 @@ from matplotlib.colors import to_hex
 from drake_screw.planning import Cause
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
-from drake_screw.visualization.attempt import FAILED, Attempt, unit
+from drake_screw.visualization.attempt import FAILED, Attempt
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -100,7 +100,7 @@ def joint_chart(attempt: Attempt) -> Markup:
         )
         if hit:
             parts.append(f'<circle cx="{x[-1]:.1f}" cy="{y[-1]:.1f}" r="4.5" fill="{color}"/>')
-    units = sorted({unit(arm, j) for j in range(arm.n)}, reverse=True)
+    units = sorted(set(arm.units), reverse=True)
     parts.append(
         f'<text x="{(left + right) / 2:.0f}" y="{bottom + 44:.0f}" text-anchor="middle">'
         f"screw segment; angles in {' or '.join(units)} between their limits</text>"

@@ -17,13 +17,13 @@ from drake_screw.visualization.attempt import (
     FAILED,
     describe_segment,
     headline,
-    unit,
 )
-from drake_screw.visualization.inspector import AXIS, Drawn
+from drake_screw.visualization.inspector import Drawn
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
 from drake_screw.visualization.rounds import headline as round_headline
 from drake_screw.visualization.rounds import sample
 from drake_screw.visualization.scene import MOST_DOTS
+from drake_screw.visualization.screw_drawing import AXIS
 from drake_screw.web.charts import joint_strip, map_words, work_area_map
 from drake_screw.web.selection import Selection, steps
 
@@ -134,7 +134,7 @@ def drawn_state(drawn: Drawn) -> dict[str, Any]:
         "joints": [
             {
                 "name": name,
-                "unit": unit(arm, j),
+                "unit": arm.units[j],
                 "lower": float(arm.lower[j]),
                 "upper": float(arm.upper[j]),
                 "strip": joint_strip(attempt, j, samples),

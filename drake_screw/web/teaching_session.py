@@ -18,7 +18,7 @@ from drake_screw.errors import DrakeScrewError
 from drake_screw.runs.narration import place
 from drake_screw.screws import exp, log, pose
 from drake_screw.typing import Array
-from drake_screw.visualization.attempt import Attempt, attempt, describe_segment, headline, unit
+from drake_screw.visualization.attempt import Attempt, attempt, describe_segment, headline
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.palette import STATUS_COLORS
 
@@ -152,7 +152,7 @@ class TeachingSession:
                     "high": float(arm.upper[j]),
                     "value": float(q[j]),
                     "margin": float(margin[j]),
-                    "unit": unit(arm, j),
+                    "unit": arm.units[j],
                 }
                 for j, name in enumerate(arm.joint_names)
             ],

@@ -17,6 +17,7 @@ VERBS = [
     "init",
     "list",
     "check",
+    "look",
     "run",
     "report",
     "inspect",

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from drake_screw.demonstrations import SegmentationConfig, guiding_poses, read_library
+from drake_screw.demonstrations.deviations import deviations, on_screws
 from drake_screw.demonstrations.faithful import FaithfulConfig, faithful_guiding_poses
-from drake_screw.demonstrations.fidelity import Fidelity, deviations, fidelity, on_screws, turn
+from drake_screw.demonstrations.fidelity import Fidelity, fidelity, turn
 from drake_screw.demonstrations.refusal import NoMotionKept, require_motion
 from drake_screw.errors import RecordingError
 from drake_screw.robot import Arm

@@ -16,6 +16,7 @@ LEAVES = (
     "my_run/report.html",
     "failing.html",
     "mine/run.json",
+    "looks.html",
     "plan.csv",
     "outcomes.csv",
 )
@@ -58,6 +59,7 @@ def test_shell_blocks_are_all_read() -> None:
         "report",
         "inspect",
         "check",
+        "look",
         "execute",
         "export",
         "evaluate",

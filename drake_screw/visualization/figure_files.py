@@ -1,0 +1,35 @@
+"""Matplotlib's figures as files, and as a part of a page: the same bytes every time."""
+
+from __future__ import annotations
+
+import base64
+import io
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from drake_screw.visualization.palette import PAPER
+
+_SVG = {"svg.hashsalt": "drake_screw", "svg.fonttype": "path"}
+
+
+def save_figure(figure: Figure, stem: str | Path) -> tuple[Path, Path]:
+    """Write a figure as ``<stem>.png`` and ``<stem>.svg`` without date, program or random ids."""
+    png, svg = Path(f"{stem}.png"), Path(f"{stem}.svg")
+    figure.savefig(png, dpi=160, metadata={"Software": None}, facecolor=PAPER)
+    svg.write_bytes(_svg(figure))
+    return png, svg
+
+
+def figure_address(figure: Figure) -> str:
+    """A figure as SVG in an address of its own, for an ``img`` that needs no other file."""
+    return f"data:image/svg+xml;base64,{base64.b64encode(_svg(figure)).decode()}"
+
+
+def _svg(figure: Figure) -> bytes:
+    text = io.BytesIO()
+    with mpl.rc_context(_SVG):
+        metadata = {"Date": None, "Creator": None}
+        figure.savefig(text, format="svg", metadata=metadata, facecolor=PAPER)
+    return text.getvalue()
