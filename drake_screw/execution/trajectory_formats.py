@@ -41,7 +41,10 @@ def ros_trajectory(plan: TimedPlan, arm: Arm) -> bytes:
                 "time_from_start": {"sec": time // 10**9, "nanosec": time % 10**9},
             }
             for time, positions, velocities in zip(
-                nanoseconds.tolist(), np.round(q, 9).tolist(), np.round(v, 9).tolist(), strict=True
+                nanoseconds.tolist(),
+                (np.round(q, 9) + 0.0).tolist(),
+                (np.round(v, 9) + 0.0).tolist(),
+                strict=True,
             )
         ],
     }

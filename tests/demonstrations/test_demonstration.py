@@ -10,6 +10,8 @@ import pytest
 
 from drake_screw.demonstrations import (
     Demonstration,
+    FaithfulConfig,
+    NoMotionKept,
     Recording,
     SegmentationConfig,
     demonstration_from_recording,
@@ -86,14 +88,20 @@ def test_poses_follow_the_object_they_belong_to_only() -> None:
     np.testing.assert_allclose(moved[:, 0], 0.2 * (demonstration.objects == 1), atol=1e-14)
 
 
-def test_a_recordings_own_region_of_interest_overrides_the_configuration() -> None:
+@pytest.mark.parametrize("method", [SegmentationConfig, FaithfulConfig])
+def test_a_recordings_own_region_of_interest_overrides_the_configuration(method: type) -> None:
     recording = reach()
     wide = replace(recording, region_of_interest=1e3)
-    assert len(made(wide).X_OE) > len(made(recording).X_OE)
-    config = SegmentationConfig(region_of_interest=1e3)
-    np.testing.assert_array_equal(made(wide).kept, made(recording, config).kept)
+    usual, config = made(recording, method()), method(region_of_interest=1e3)
+    found = made(wide, method())
+    assert found.kept[0] < usual.kept[0] <= usual.kept[-1] < found.kept[-1]
+    np.testing.assert_array_equal(found.kept, made(recording, config).kept)
     narrow = replace(recording, region_of_interest=1.0)
-    assert len(made(narrow, config).X_OE) == 1
+    if method is FaithfulConfig:
+        with pytest.raises(NoMotionKept):
+            made(narrow, config)
+    else:
+        assert len(made(narrow, config).X_OE) == 1
 
 
 @pytest.mark.parametrize("task", ["pouring", "scooping"])
