@@ -1,13 +1,15 @@
 """How faithfully both methods of segmentation keep recordings, and how long they take.
 
     python benchmarks/fidelity.py --demonstrations 'demos/{task}' [--model arm.sdf] [--instances N]
+        [--figure PNG --recording pouring/demo_14]
 
 prints two tables in Markdown. One is of all recordings of a task: guiding poses (mean, most), the
 largest deviation of the samples kept (median of the recordings, worst), the end effector's turn
 near the object that is lost (mean, worst, and recordings that lose more than 0.2 rad), the share of
 the time near the object that is kept, the share of N instances for which one demonstration has a
 plan within the joint limits (mean), and the processor's time for a recording (median, most). The
-other has a line for each recording. `drake_screw.demonstrations.fidelity` says what is measured.
+other has a line for each recording, and the figure shows one under both methods.
+`drake_screw.demonstrations.fidelity` says what is measured.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 from task import TASKS
 
 from drake_screw.assembly.setup import Setup
@@ -97,17 +100,52 @@ def summary(results: list[Measured], covered: Array) -> str:
     )
 
 
+def draw(task: str, folder: Path, model: Path | None, file: Path) -> None:
+    """One recording under both methods: how far its samples are from the screws, over time."""
+    figure = Figure(figsize=(10, 4.6), layout="constrained")
+    axes = figure.subplots(2, len(METHODS), sharex=True, sharey="row")
+    for column, method in enumerate(METHODS):
+        scenario = load_scenario(task, [f"segmentation.method={method}"])
+        setup = Setup(scenario if model is None else swap_model(scenario, model))
+        look = setup.look(setup.recorder.read(folder, "folder"))
+        assert look.demonstration is not None
+        (kept,) = look.demonstration.fidelity
+        turn = f"turn {kept.turn_kept:.2f} of {kept.turn_shown:.2f} rad"
+        title = f"{method}: {kept.guiding_poses} guiding poses, {turn}"
+        axes[0, column].set_title(title, fontsize=10)
+        axes[1, column].set_xlabel("time (s)")
+        for near in look.deviations:
+            t = look.t[near.samples]
+            axes[0, column].plot(t, 1e3 * near.position, color="#0072b2")
+            axes[1, column].plot(t, near.rotation, color="#0072b2")
+        for ax, tolerance in zip(axes[:, column], (10.0, 0.1), strict=True):
+            ax.axhline(tolerance, color="black", linestyle="--", linewidth=0.9)
+            ax.set_ylim(bottom=0.0)
+            ax.spines[["top", "right"]].set_visible(False)
+            for guide in look.demonstration.kept:
+                ax.axvline(look.t[guide], color="0.8", linewidth=0.8, zorder=0)
+    axes[0, 0].set_ylabel("from the screws (mm)")
+    axes[1, 0].set_ylabel("from the screws (rad)")
+    figure.savefig(file, dpi=150)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--demonstrations", required=True, help="folder; {task} is replaced")
     parser.add_argument("--model", type=Path, help="of the arm that the recordings were made on")
     parser.add_argument("--instances", type=int, default=2000)
+    parser.add_argument("--figure", type=Path, help="PNG to write")
+    parser.add_argument("--recording", default="pouring/demo_14", help="that it shows")
     arguments = parser.parse_args()
     print(
         "| task | method | guiding poses | position | rotation | turn lost | more than 0.2 rad "
         "| time kept | coverage | time |\n" + "|---" * 10 + "|"
     )
     lines = []
+    if arguments.figure is not None:
+        task, name = arguments.recording.split("/")
+        folder = Path(arguments.demonstrations.format(task=task)) / name
+        draw(task, folder, arguments.model, arguments.figure)
     for task in TASKS:
         scenario = load_scenario(task)
         setup = Setup(
