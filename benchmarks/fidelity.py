@@ -1,7 +1,7 @@
 """How faithfully both methods of segmentation keep recordings, and how long they take.
 
     python benchmarks/fidelity.py --demonstrations 'demos/{task}' [--model arm.sdf] [--instances N]
-        [--figure PNG --recording pouring/demo_14]
+        [--figure PNG --recording pouring/demo_30]
 
 prints two tables in Markdown. One is of all recordings of a task: guiding poses (mean, most), the
 largest deviation of the samples kept (median of the recordings, worst), the end effector's turn
@@ -135,7 +135,7 @@ def main() -> None:
     parser.add_argument("--model", type=Path, help="of the arm that the recordings were made on")
     parser.add_argument("--instances", type=int, default=2000)
     parser.add_argument("--figure", type=Path, help="PNG to write")
-    parser.add_argument("--recording", default="pouring/demo_14", help="that it shows")
+    parser.add_argument("--recording", default="pouring/demo_30", help="that it shows")
     arguments = parser.parse_args()
     print(
         "| task | method | guiding poses | position | rotation | turn lost | more than 0.2 rad "
