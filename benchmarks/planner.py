@@ -5,8 +5,8 @@
 plans uniform instances of the shipped scenarios with simulated demonstrations, in about a minute.
 For recorded demonstrations, made with an arm of another model, and outcomes on record:
 
-    python benchmarks/planner.py --demonstrations 'demos/{task}' --model arm.sdf \\
-        --outcomes 'outcomes_{task}.csv'
+    python benchmarks/planner.py --tasks pouring_paper scooping_paper \\
+        --demonstrations 'demos/{task}' --model arm.sdf --outcomes 'outcomes_{task}.csv'
 
 and to compare success and failure with the reference planner's small steps on N random pairs of
 instance and demonstration in each scenario (20,000 take some minutes):
@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from agreement import agreement, recorded_outcomes
 from pinocchio_arm import PinocchioArm
-from task import TASKS, Task, load_task
+from task import TASKS, Task, in_folder, load_task
 
 from drake_screw.planning import BatchPlanner, ReferencePlanner
 from drake_screw.typing import Array
@@ -163,7 +163,7 @@ def measure(task: Task, arguments: argparse.Namespace) -> dict[str, Any]:
         planner = BatchPlanner(task.arm.screw_chain())
         result["recorded"] = recorded_outcomes(
             task,
-            Path(arguments.outcomes.format(task=task.name)),
+            Path(in_folder(arguments.outcomes, task.name)),
             lambda X_WO: planner.all_outcomes(task.demonstrations, X_WO, task.q_start),
         )
     if arguments.agreement:

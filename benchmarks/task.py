@@ -43,6 +43,11 @@ class Task:
         return area.X_WO(rng.uniform(area.lower, area.upper, (count, *area.lower.shape)))
 
 
+def in_folder(template: str, name: str) -> str:
+    """A path in which {task} stands for a scenario's task: both pouring and pouring_paper pour."""
+    return template.format(task=name.removesuffix("_paper"))
+
+
 def load_task(
     name: str, folder: str | None = None, model: Path | None = None, limit: int | None = None
 ) -> Task:
@@ -52,7 +57,7 @@ def load_task(
     arm = setup.workcell.arm
     recordings: tuple[Recording, ...]
     if folder is not None:
-        recordings = read_library(folder.format(task=name), arm.joint_names, arm.lower, arm.upper)[
+        recordings = read_library(in_folder(folder, name), arm.joint_names, arm.lower, arm.upper)[
             :limit
         ]
     else:
