@@ -80,7 +80,7 @@ def draw_distribution(ax: Axes, distribution: Distribution) -> None:
     place = {"transform": ax.transAxes, "ha": "right", "va": "top", "fontsize": 8.5}
     ax.text(0.99, 0.94, "\n".join(text), color=INK, **place)
     ax.set_ylim(0.0, 1.22 * max(shares, default=1.0))
-    ax.yaxis.set_major_formatter(PercentFormatter(1.0))
+    ax.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
     ax.tick_params(labelsize=8)
     ax.spines[["top", "right"]].set_visible(False)
 
