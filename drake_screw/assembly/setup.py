@@ -258,7 +258,7 @@ class Setup:
         Args:
             demonstrations: D of them.
             instances: (N, k, 3) x, y in m and yaw in rad of each of the k objects; (N, 3) or (N, 2)
-                will do for a single object, whose yaw is then the least of the work area.
+                will do for a single object, (N, 2) only where the work area fixes its yaw.
 
         Returns:
             Outcomes (N, D).

@@ -171,20 +171,23 @@ def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
 def placed(setup: Setup, numbers: Sequence[float]) -> Array:
     """The task instance (k, 3) that a user means by x, y and perhaps yaw of each object.
 
-    A yaw left out is the least of the work area. Places outside the work area are allowed.
+    A yaw may be left out where the work area fixes it. Places outside the work area are allowed.
 
     Raises:
-        ScenarioError: the wrong number of numbers.
+        ScenarioError: the wrong number of numbers, or no yaw where it varies.
     """
-    objects = setup.area.objects
+    area = setup.area
+    turns = [o.name for o in area.objects if o.lower[2] < o.upper[2]]
     try:
-        instance = np.reshape(np.asarray(numbers, dtype=float), (1, len(objects), -1))
-        return setup.area.complete(instance)[0]
+        instance = np.reshape(np.asarray(numbers, dtype=float), (1, len(area.objects), -1))
+        return area.complete(instance)[0]
     except ValueError as error:
+        why = f"; the yaw of {', '.join(turns)} varies" if turns else ""
+        yaw = "yaw in rad" if turns else "perhaps yaw in rad"
         raise ScenarioError(
-            f"an instance of {len(numbers)} numbers: {' '.join(f'{v:g}' for v in numbers)}",
-            remedy="Give x and y in m, and perhaps yaw in rad, of each of: "
-            f"{', '.join(o.name for o in objects)}.",
+            f"an instance of {len(numbers)} numbers: {' '.join(f'{v:g}' for v in numbers)}{why}",
+            remedy=f"Give x and y in m, and {yaw}, of each of: "
+            f"{', '.join(o.name for o in area.objects)}.",
         ) from error
 
 

@@ -19,8 +19,8 @@ def read_instances(file: Path, area: WorkArea) -> Array:
     """Read task instances from a CSV with a header.
 
     Columns are x, y (m) and, if wanted, yaw (rad) of the only object, or bowl.x and so on where
-    there are several; a yaw that has no column is the least of the work area. Other columns are
-    passed over.
+    there are several; a yaw may go without a column where the work area fixes it. Other columns
+    are passed over.
 
     Returns:
         x_y_yaw: (N, k, 3).
@@ -44,9 +44,9 @@ def read_instances(file: Path, area: WorkArea) -> Array:
             name = axis if len(area.objects) == 1 else f"{item.name}.{axis}"
             if name in header:
                 columns[header.index(name)] = (i, j)
-            elif axis != "yaw":
+            elif axis != "yaw" or item.lower[j] < item.upper[j]:
                 raise ScenarioError(
-                    f"no column '{name}'",
+                    f"no column '{name}'" + (", and it varies" if axis == "yaw" else ""),
                     remedy=suggestion(name, header, "Columns found"),
                     file=file,
                     line=1,

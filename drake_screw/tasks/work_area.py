@@ -80,14 +80,14 @@ class WorkArea:
         """Task instances with all their coordinates.
 
         Args:
-            instances: (N, k, 3) x, y in m and yaw in rad, or (N, k, 2) without yaw, which is then
-                the least of the area; the axis k may be left out for a single object.
+            instances: (N, k, 3) x, y in m and yaw in rad, or (N, k, 2) without yaw where the area
+                fixes it; the axis k may be left out for a single object.
 
         Returns:
             (N, k, 3).
 
         Raises:
-            ValueError: another shape, or a number that is not finite.
+            ValueError: another shape, a number that is not finite, or no yaw where it varies.
 
         >>> area = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=-0.1),))
         >>> area.complete([[0.9, 0.3], [1.0, 0.4]]).tolist()
@@ -101,6 +101,9 @@ class WorkArea:
             raise ValueError(f"instances have shape {np.shape(instances)}, expected (N, {k}, 3)")
         if not np.isfinite(given).all():
             raise ValueError("instances must be finite numbers")
+        turning = np.flatnonzero(self.lower[:, 2] < self.upper[:, 2])
+        if given.shape[2] == 2 and turning.size:
+            raise ValueError(f"the yaw of '{self.objects[turning[0]].name}' varies, and is missing")
         x_y_yaw = np.tile(self.lower, (len(given), 1, 1))
         x_y_yaw[..., : given.shape[2]] = given
         return x_y_yaw

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import Suggestion
+from drake_screw.assembly.setup import Setup
 from drake_screw.errors import DrakeScrewError, PluginError, RunDirectoryError, ScenarioError
 from drake_screw.runs.executions import execute, known_demonstrations, placed
 from drake_screw.runs.run import new_run, open_run
@@ -134,6 +135,14 @@ def test_an_instance_takes_two_or_three_numbers(run, numbers) -> None:
 def test_an_instance_may_have_a_yaw(run) -> None:
     setup = open_run(run).setup
     np.testing.assert_array_equal(placed(setup, (0.8, 0.1)), [[0.8, 0.1, 0.0]])
+    np.testing.assert_array_equal(placed(setup, (0.8, 0.1, 0.5)), [[0.8, 0.1, 0.5]])
+
+
+def test_an_instance_needs_a_yaw_that_varies() -> None:
+    setup = Setup(load_scenario("pouring", ["objects.0.yaw=[-0.8, 0.8]"]))
+    with pytest.raises(ScenarioError, match="the yaw of bowl varies") as error:
+        placed(setup, (0.8, 0.1))
+    assert "Give x and y in m, and yaw in rad, of each of: bowl." in str(error.value)
     np.testing.assert_array_equal(placed(setup, (0.8, 0.1, 0.5)), [[0.8, 0.1, 0.5]])
 
 

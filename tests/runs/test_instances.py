@@ -52,6 +52,18 @@ def test_bad_tables_are_refused_with_their_place(tmp_path, text, message, line) 
     assert (error.value.file, error.value.line) == (file, line)
 
 
+def test_a_yaw_that_varies_is_never_filled_in(tmp_path) -> None:
+    turning = WorkArea((ObjectArea("bowl", (0.5, -0.2, -0.8), (1.0, 0.2, 0.8), 0.0),))
+    with pytest.raises(ScenarioError, match="no column 'yaw', and it varies") as error:
+        read_instances(write(tmp_path, "x,y\n0.6,0.1\n"), turning)
+    assert error.value.line == 1
+    given = read_instances(write(tmp_path, "x,y,yaw\n0.6,0.1,-0.3\n"), turning)
+    assert given.tolist() == [[[0.6, 0.1, -0.3]]]
+    with pytest.raises(ValueError, match="the yaw of 'bowl' varies, and is missing"):
+        turning.complete([[0.6, 0.1]])
+    assert turning.complete([[0.6, 0.1, 0.2]]).tolist() == [[[0.6, 0.1, 0.2]]]
+
+
 def test_a_missing_table(tmp_path) -> None:
     with pytest.raises(ScenarioError, match="No such file"):
         read_instances(tmp_path / "none.csv", ONE)
