@@ -6,7 +6,7 @@ WORKERS ?= auto
 MODULE ?=
 SAMPLE ?=
 
-.PHONY: run test slow install install-test lint types layers unit notebooks mutate hooks clean help
+.PHONY: run test slow install install-test lint types layers unit coverage notebooks mutate hooks clean help
 
 help:  ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -46,7 +46,10 @@ types: install-test  ## mypy
 layers: install-test  ## import-linter: data flows one way
 	$(BIN)/lint-imports
 
-unit: install-test  ## pytest with coverage
+unit: install-test  ## pytest
+	$(BIN)/pytest -n $(WORKERS)
+
+coverage: install-test  ## pytest, and which lines it ran; a good deal slower
 	$(BIN)/coverage erase
 	$(BIN)/pytest -n $(WORKERS) --cov=drake_screw --cov-report=term
 
