@@ -62,6 +62,11 @@ def write_folder(folder: Path, fill: Callable[[Path], None]) -> None:
     os.replace(temporary, folder)
 
 
+def writable(option: str) -> str:
+    """What to do about a file that an option names and that cannot be written."""
+    return f"Give {option} a file in a folder that exists and that you may write to."
+
+
 @contextmanager
 def writing(
     place: Path, remedy: str, kind: type[DrakeScrewError] = RunDirectoryError

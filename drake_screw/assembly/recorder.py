@@ -22,11 +22,12 @@ from drake_screw.demonstrations import (
     Look,
     Recording,
     SegmentationConfig,
-    demonstration_from_recording,
     look_at,
     read_library,
 )
+from drake_screw.demonstrations.demonstration import demonstration_of
 from drake_screw.demonstrations.library import JOINTS
+from drake_screw.demonstrations.shown import Shown, what_is_shown
 from drake_screw.errors import ModelError, RecordingError
 from drake_screw.planning import Planner
 from drake_screw.plugins import find
@@ -147,13 +148,7 @@ class Recorder:
             NoMotionKept: of the recording, as `demonstration_from_recording` says.
             RecordingError: it names an object that there is not.
         """
-        learned = demonstration_from_recording(
-            recording,
-            self.arm,
-            learning.segmentation,
-            names=self._names,
-            task_objects=learning.task_objects,
-        )
+        learned = demonstration_of(self._shown(recording, learning))
         return learned if self.robot is None else _moved(learned, self._shift(recording))
 
     def look(self, recording: Recording, learning: Learning) -> Look:
@@ -162,22 +157,21 @@ class Recorder:
         Raises:
             RecordingError: it names an object that there is not.
         """
-        look = look_at(
-            recording,
-            self.arm,
-            learning.segmentation,
-            names=self._names,
-            task_objects=learning.task_objects,
-        )
+        look = look_at(self._shown(recording, learning), self.arm)
         if self.robot is None:
             return look
         X = self._shift(recording)
         found = None if look.demonstration is None else _moved(look.demonstration, X)
         return replace(look, X_WE=X @ look.X_WE, X_WO=X @ look.X_WO, demonstration=found)
 
-    @property
-    def _names(self) -> list[str]:
-        return [item.name for item in self.area.objects]
+    def _shown(self, recording: Recording, learning: Learning) -> Shown:
+        return what_is_shown(
+            recording,
+            self.arm,
+            learning.segmentation,
+            names=[item.name for item in self.area.objects],
+            task_objects=learning.task_objects,
+        )
 
     @property
     def _k(self) -> int:

@@ -68,7 +68,7 @@ def look(
         from drake_screw.web.look_page import write_look_page
 
         write_look_page(looks, html)
-    show_looks(summary, why, output.console)
+    show_looks(summary, why, output)
     if html is not None:
         output.say(f"written: {html}")
     output.write(summary)

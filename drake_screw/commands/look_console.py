@@ -9,6 +9,7 @@ from rich.segment import Segments
 from rich.table import Table
 
 from drake_screw.assembly.looking import LooksSummary
+from drake_screw.commands.output import Output
 from drake_screw.demonstrations.fidelity import Fidelity
 from drake_screw.demonstrations.look_summary import LookSummary
 from drake_screw.resources import SCENARIO_SUFFIXES, list_resources
@@ -40,34 +41,34 @@ def chosen_for(recording: Path, scenario: str | None) -> tuple[str, str]:
     return DEFAULT, "the default; --scenario gives another"
 
 
-def show_looks(summary: LooksSummary, why: str, console: Console) -> None:
+def show_looks(summary: LooksSummary, why: str, output: Output) -> None:
     """A single recording in all its numbers, or a library as a table.
 
     Args:
         summary: of what was looked at.
         why: this scenario, in words.
-        console: to write to.
+        output: to write to.
     """
     scenario = f"{summary.scenario} ({why}), segmentation {summary.segmentation}"
     if summary.library:
-        _say(console, f"scenario   {scenario}")
-        _print(console, library_table(summary.recordings))
+        output.say(f"scenario   {scenario}")
+        _print(output.console, library_table(summary.recordings))
         for look in summary.recordings:
             if look.refused is not None:
-                _say(console, look.line)
+                output.say(look.line)
         return
     (look,) = summary.recordings
-    _say(console, look.line)
+    output.say(look.line)
     if look.refused is not None and look.refused.remedy:
-        _say(console, f"  {look.refused.remedy}")
+        output.say(f"  {look.refused.remedy}")
     facts = [("scenario", scenario), *look.facts()]
     width = max(len(name) for name, _ in facts)
     before = ""
     for name, text in facts:
-        _say(console, f"{'' if name == before else name:<{width}}  {text}")
+        output.say(f"{'' if name == before else name:<{width}}  {text}")
         before = name
     if look.screws:
-        _print(console, screw_table(look))
+        _print(output.console, screw_table(look))
 
 
 def library_table(looks: tuple[LookSummary, ...]) -> Table:
@@ -127,7 +128,3 @@ def _print(console: Console, table: Table) -> None:
     """A table at its full width, wherever it goes."""
     wide = console.render(table, console.options.update(width=200))
     console.print(Segments(wide), soft_wrap=True, end="")
-
-
-def _say(console: Console, text: object) -> None:
-    console.print(str(text), soft_wrap=True, markup=False, highlight=False)

@@ -9,6 +9,7 @@ from pathlib import Path
 from rich.console import Console
 
 from drake_screw.errors import DrakeScrewError
+from drake_screw.files import writable, write_text, writing
 
 STANDARD_OUTPUT = "-"
 JSON = "--json"
@@ -65,9 +66,8 @@ class Output:
         if self._json == STANDARD_OUTPUT:
             sys.stdout.write(text)
             return
-        from drake_screw.files import write_text, writing
 
-        with writing(Path(self._json), writable(JSON)):
+        with writing(Path(self._json), _remedy(JSON)):
             write_text(Path(self._json), text)
 
 
@@ -89,11 +89,10 @@ def check_writable(file: Path, option: str) -> None:
         raise _unwritable(file, option, "its folder is read-only")
 
 
-def writable(option: str) -> str:
-    """What to do about a file that an option names and that cannot be written."""
-    other = ", or -" if option == JSON else ""
-    return f"Give {option} a file in a folder that exists and that you may write to{other}."
+def _remedy(option: str) -> str:
+    remedy = writable(option)
+    return f"{remedy.removesuffix('.')}, or -." if option == JSON else remedy
 
 
 def _unwritable(file: Path, option: str, why: str) -> DrakeScrewError:
-    return DrakeScrewError(f"cannot be written: {why}", remedy=writable(option), file=file)
+    return DrakeScrewError(f"cannot be written: {why}", remedy=_remedy(option), file=file)

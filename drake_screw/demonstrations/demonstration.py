@@ -103,7 +103,7 @@ def demonstration_of(shown: Shown) -> Demonstration:
     regions = shown.regions
     notes: tuple[str, ...] = ()
     if isinstance(config, FaithfulConfig):
-        found = faithful_guiding_poses(X_WE, X_WO, config, t=t, named=shown.named)
+        found = faithful_guiding_poses(X_WE, X_WO, config, t=t, regions=regions)
         _, owners, kept = found
         file = recording.source
         require_motion(X_WE, t, X_WO, owners, kept, regions, names, config, file=file)

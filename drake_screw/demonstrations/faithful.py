@@ -173,6 +173,7 @@ def faithful_guiding_poses(
     *,
     t: Array | None = None,
     named: Sequence[int] | None = None,
+    regions: Regions | None = None,
 ) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
     """Guiding poses of a recorded end-effector path, each in the frame of the object it belongs to.
 
@@ -196,12 +197,13 @@ def faithful_guiding_poses(
         config: tolerances.
         t: (m,) s.
         named: indices of the objects of the task, if they are known.
+        regions: of the configuration, if they are at hand; `named` is not looked at then.
 
     Returns:
         X_OE (g, 4, 4); the object's index (g,); the index (g,) into the path. All empty if the end
         effector comes near no object of the task.
     """
-    visits = config.regions(X_WE, X_WO, named).visits
+    visits = (regions or config.regions(X_WE, X_WO, named)).visits
     X_smoothed = X_WE if t is None else smoothed(X_WE, t)
     shown, cuts = [np.zeros((0, 4, 4))], [np.zeros(0, dtype=np.int64)]
     for visit in visits:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -15,8 +14,7 @@ from drake_screw.demonstrations.deviations import Deviations, runs_of
 from drake_screw.demonstrations.faithful import FaithfulConfig
 from drake_screw.demonstrations.recording import Recording
 from drake_screw.demonstrations.refusal import NoMotionKept
-from drake_screw.demonstrations.segmentation import SegmentationConfig
-from drake_screw.demonstrations.shown import Shown, what_is_shown
+from drake_screw.demonstrations.shown import Shown
 from drake_screw.screws import Screw, screw_between, translation_distance
 from drake_screw.typing import Array
 
@@ -196,20 +194,8 @@ class Look:
         return f"{near}, but before the first or after the last guiding pose"
 
 
-def look_at(
-    recording: Recording,
-    arm: Arm,
-    config: SegmentationConfig | FaithfulConfig,
-    *,
-    names: Sequence[str] | None = None,
-    task_objects: Sequence[str] = (),
-) -> Look:
-    """What a recording holds; the arguments are those of `demonstration_from_recording`.
-
-    Raises:
-        RecordingError: an object of the task has a name that no object has.
-    """
-    shown = what_is_shown(recording, arm, config, names=names, task_objects=task_objects)
+def look_at(shown: Shown, arm: Arm) -> Look:
+    """What a recording of an arm holds, and what becomes of it; see `shown.what_is_shown`."""
     found: Demonstration | None = None
     refused: NoMotionKept | None = None
     try:
@@ -219,7 +205,7 @@ def look_at(
     return Look(
         shown,
         shown.X_WE,
-        recording.X_WO,
+        shown.recording.X_WO,
         arm.lower,
         arm.upper,
         arm.units,

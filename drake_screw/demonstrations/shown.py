@@ -28,7 +28,6 @@ class Shown:
         config: how it is to be cut, with the recording's own region of interest if it has one.
         measure: tolerances and regions that its guiding poses are measured by: the configuration
             itself where it is faithful, otherwise the defaults with its region of interest.
-        named: indices of the objects of the task, if they are known.
         regions: where the end effector is near which object.
     """
 
@@ -37,7 +36,6 @@ class Shown:
     X_WE: Array
     config: SegmentationConfig | FaithfulConfig
     measure: FaithfulConfig
-    named: tuple[int, ...] | None
     regions: Regions
 
 
@@ -74,7 +72,7 @@ def what_is_shown(
         measure = FaithfulConfig(region_of_interest=max(config.region_of_interest, 1.0))
     X_WE = arm.pose(recording.q)
     regions = measure.regions(X_WE, recording.X_WO, named)
-    return Shown(recording, known, X_WE, config, measure, named, regions)
+    return Shown(recording, known, X_WE, config, measure, regions)
 
 
 def _indices(

@@ -176,8 +176,7 @@ def placed(setup: Setup, numbers: Sequence[float]) -> Array:
     Raises:
         ScenarioError: the wrong number of numbers, or no yaw where it varies.
     """
-    area = setup.area
-    turns = [o.name for o in area.objects if o.lower[2] < o.upper[2]]
+    area, turns = setup.area, setup.area.turning
     try:
         instance = np.reshape(np.asarray(numbers, dtype=float), (1, len(area.objects), -1))
         return area.complete(instance)[0]

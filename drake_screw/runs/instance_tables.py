@@ -44,7 +44,7 @@ def read_instances(file: Path, area: WorkArea) -> Array:
             name = axis if len(area.objects) == 1 else f"{item.name}.{axis}"
             if name in header:
                 columns[header.index(name)] = (i, j)
-            elif axis != "yaw" or item.lower[j] < item.upper[j]:
+            elif axis != "yaw" or item.name in area.turning:
                 raise ScenarioError(
                     f"no column '{name}'" + (", and it varies" if axis == "yaw" else ""),
                     remedy=suggestion(name, header, "Columns found"),

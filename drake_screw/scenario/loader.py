@@ -46,20 +46,7 @@ def load_scenario(name_or_path: PathLike, overrides: Sequence[str] = ()) -> Scen
             everything that is wrong, or the first thing where it is not even YAML.
     """
     file = find_resource("scenarios", name_or_path, SCENARIO_SUFFIXES)
-    tree = parse(_read(file), Place(file))
-    if tree is None or (isinstance(tree, Scalar) and tree.value is None):
-        raise ScenarioError("the file is empty", remedy="Start from a shipped one.", file=file)
-    if not isinstance(tree, Entries):
-        raise tree.place.error(
-            "expected keys with values, such as `name: pouring`", "See the shipped scenarios."
-        )
-    for text in overrides:
-        tree = _override(tree, text)
-    data = plain(tree)
-    try:
-        return Scenario.model_validate(data).read_from(file)
-    except ValidationError as error:
-        raise _error(problems_of(error, data), tree, file) from None
+    return _scenario(_entries(file), overrides, file)
 
 
 def load_stored_scenario(file: PathLike) -> Scenario:
@@ -72,14 +59,13 @@ def load_stored_scenario(file: PathLike) -> Scenario:
         ScenarioError: as `load_scenario`.
     """
     path = find_resource("scenarios", file, SCENARIO_SUFFIXES)
-    tree = parse(_read(path), Place(path))
-    written = plain(tree) if isinstance(tree, Entries) else {}
+    tree = _entries(path)
     overrides = []
     for (block, key), meaning in _BEFORE_IT_WAS_WRITTEN.items():
-        found = written.get(block)
-        if isinstance(found, dict) and key not in found:
+        found = tree.entries.get(block)
+        if isinstance(found, Entries) and key not in found.entries:
             overrides.append(f"{block}.{key}={meaning}")
-    return load_scenario(path, overrides)
+    return _scenario(tree, overrides, path)
 
 
 def dump_scenario(scenario: Scenario) -> str:
@@ -95,6 +81,29 @@ def dump_scenario(scenario: Scenario) -> str:
         allow_unicode=True,
         width=100,
     )
+
+
+def _entries(file: Path) -> Entries:
+    """The file's keys and values, with their marks."""
+    tree = parse(_read(file), Place(file))
+    if tree is None or (isinstance(tree, Scalar) and tree.value is None):
+        raise ScenarioError("the file is empty", remedy="Start from a shipped one.", file=file)
+    if not isinstance(tree, Entries):
+        raise tree.place.error(
+            "expected keys with values, such as `name: pouring`", "See the shipped scenarios."
+        )
+    return tree
+
+
+def _scenario(tree: Node, overrides: Sequence[str], file: Path) -> Scenario:
+    """What a file's tree says, with some of its values replaced."""
+    for text in overrides:
+        tree = _override(tree, text)
+    data = plain(tree)
+    try:
+        return Scenario.model_validate(data).read_from(file)
+    except ValidationError as error:
+        raise _error(problems_of(error, data), tree, file) from None
 
 
 def _read(file: Path) -> str:

@@ -104,8 +104,9 @@ def draw_in_all(
     """
     count = np.broadcast_to(np.asarray(counts, dtype=np.int64), regions.K)
     start = np.broadcast_to(np.asarray(starts, dtype=np.int64), regions.K)
+    chosen = np.flatnonzero(count).tolist() or [0]  # none of region 0 where there are none at all
     places = [
         draw(regions, j, seed=seed, round=round, start=int(start[j]), count=int(count[j]))
-        for j in range(regions.K)
+        for j in chosen
     ]
     return np.concatenate(places), np.repeat(np.arange(regions.K), count)

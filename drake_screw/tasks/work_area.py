@@ -76,6 +76,11 @@ class WorkArea:
         yaw = yaw - 2.0 * np.pi * np.round((yaw - middle) / (2.0 * np.pi))
         return np.stack([X_WO[..., 0, 3], X_WO[..., 1, 3], yaw], axis=-1)
 
+    @property
+    def turning(self) -> tuple[str, ...]:
+        """Names of the objects whose yaw varies."""
+        return tuple(o.name for o in self.objects if o.lower[2] < o.upper[2])
+
     def complete(self, instances: ArrayLike) -> Array:
         """Task instances with all their coordinates.
 
@@ -101,9 +106,8 @@ class WorkArea:
             raise ValueError(f"instances have shape {np.shape(instances)}, expected (N, {k}, 3)")
         if not np.isfinite(given).all():
             raise ValueError("instances must be finite numbers")
-        turning = np.flatnonzero(self.lower[:, 2] < self.upper[:, 2])
-        if given.shape[2] == 2 and turning.size:
-            raise ValueError(f"the yaw of '{self.objects[turning[0]].name}' varies, and is missing")
+        if given.shape[2] == 2 and self.turning:
+            raise ValueError(f"the yaw of '{self.turning[0]}' varies, and is missing")
         x_y_yaw = np.tile(self.lower, (len(given), 1, 1))
         x_y_yaw[..., : given.shape[2]] = given
         return x_y_yaw

@@ -12,7 +12,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Look
 from drake_screw.demonstrations.look_summary import LookSummary
 from drake_screw.errors import DrakeScrewError
-from drake_screw.files import write_text, writing
+from drake_screw.files import writable, write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.runs.pictures import make_scene
 from drake_screw.visualization.drawing import AXES
@@ -42,8 +42,7 @@ def write_look_page(looks: Looks, file: Path) -> Path:
         DrakeScrewError: it cannot be written there.
     """
     text = look_page(looks)
-    remedy = "Give --html a file in a folder that exists and that you may write to."
-    with writing(file, remedy, DrakeScrewError):
+    with writing(file, writable("--html"), DrakeScrewError):
         write_text(file, text)
     return file
 

@@ -17,6 +17,7 @@ from drake_screw.demonstrations import (
 )
 from drake_screw.demonstrations.deviations import deviations_from_screws
 from drake_screw.demonstrations.look_summary import summarized
+from drake_screw.demonstrations.shown import what_is_shown
 from drake_screw.screws import exp, pose
 from tests.demonstrations.test_demonstration import reach, sliding_hand
 
@@ -30,7 +31,7 @@ NAMES = ("jug", "mug")
 
 def looked(config=FAITHFUL, objects: int = 2, **changes) -> Look:
     recording = replace(reach(objects), **changes)
-    return look_at(recording, ARM, config, names=NAMES[:objects])
+    return look_at(what_is_shown(recording, ARM, config, names=NAMES[:objects]), ARM)
 
 
 def test_a_known_deviation_is_found_sample_by_sample() -> None:
