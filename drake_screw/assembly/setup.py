@@ -15,9 +15,10 @@ from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
 from drake_screw.assembly.recorder import Learning, Recorder
 from drake_screw.assembly.sanity import check_reach, check_start
+from drake_screw.assembly.symmetries import symmetries
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
-from drake_screw.planning import BatchPlanner, Outcomes, Planner
+from drake_screw.planning import BatchPlanner, Outcomes, Planner, Symmetries
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.plugins import find
 from drake_screw.robot import (
@@ -141,8 +142,20 @@ class Setup:
     @cached_property
     def batch_planner(self) -> BatchPlanner:
         """The planner that watches joint limits and reach."""
-        chain = self.workcell.arm.screw_chain()
-        return BatchPlanner(chain, tolerance=self.scenario.planner.tolerance)
+        return BatchPlanner(
+            self.workcell.arm.screw_chain(),
+            tolerance=self.scenario.planner.tolerance,
+            symmetries=self.symmetries,
+        )
+
+    @cached_property
+    def symmetries(self) -> Symmetries:
+        """Turns of objects and of what the end effector holds, which leave the task as it is.
+
+        Raises:
+            ModelError: the tool's frame is not one that the end effector carries.
+        """
+        return symmetries(self.scenario, self.workcell.arm)
 
     @cached_property
     def planner(self) -> Planner:

@@ -25,12 +25,10 @@ class Job:
 
     Attributes:
         plan: one that succeeded.
-        guides: (g, 4, 4) its guiding poses X_WE.
         X_WO: (k, 4, 4) where the objects are.
     """
 
     plan: Plan
-    guides: Array
     X_WO: Array
 
 
@@ -80,7 +78,7 @@ def _bench(config: StationConfig) -> tuple[Station, TimeLimits]:
 
 def _execute(bench: tuple[Station, TimeLimits], job: Job) -> Execution:
     station, limits = bench
-    poses = np.concatenate([station.arm.pose(job.plan.q[:1]), job.guides])
+    poses = np.concatenate([station.arm.pose(job.plan.q[:1]), job.plan.guides])
     timed = time_plan(job.plan, poses, station.arm, limits)
     done = simulate(station, timed, job.X_WO)
     kept = np.append(np.arange(0, len(done.t) - 1, KEPT), len(done.t) - 1)

@@ -4,6 +4,7 @@ from drake_screw.planning.batch import BatchPlanner
 from drake_screw.planning.outcomes import Cause, Outcomes, Plan, concatenate
 from drake_screw.planning.planner import Planner
 from drake_screw.planning.reference import ReferencePlanner
+from drake_screw.planning.symmetry import Symmetries
 
 __all__ = [
     "BatchPlanner",
@@ -12,5 +13,6 @@ __all__ = [
     "Plan",
     "Planner",
     "ReferencePlanner",
+    "Symmetries",
     "concatenate",
 ]

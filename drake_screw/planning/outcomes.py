@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
 
@@ -32,12 +32,15 @@ class Outcomes:
         segment: the screw segment that failed, from 0; -1 for a success.
         joint: the joint at its limit, from 0; -1 otherwise.
         fraction: how much of the failing segment was done, 0 to 1; 1 for a success.
+        turn: which turn of symmetric bodies it is of, in the order in which they are tried, from 0
+            (see `Symmetries`); of a failure the one that came furthest; 0 where there are none.
     """
 
     cause: NDArray[np.uint8]
     segment: NDArray[np.int16]
     joint: NDArray[np.int8]
     fraction: NDArray[np.float32]
+    turn: NDArray[np.int16]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -71,19 +74,27 @@ class Outcomes:
     @property
     def best(self) -> Outcomes:
         """(N,) of outcomes (N, D): what became of `best_attempt`; NOT_TRIED if there was none."""
-        best, none = self.best_attempt[..., None], one_outcome(Cause.NOT_TRIED, fraction=0.0)
+        best, none = self.best_attempt, one_outcome(Cause.NOT_TRIED, fraction=0.0)
+        if self.shape[-1] == 0:
+            return none._each(lambda value: np.full(self.shape[:-1], value))
+        return self.take(np.maximum(best, 0)).replaced(best < 0, none)
 
-        def picked(values: NDArray[Any], otherwise: NDArray[Any]) -> NDArray[Any]:
-            last = np.broadcast_to(otherwise, (*self.shape[:-1], 1))
-            return np.take_along_axis(np.concatenate([values, last], axis=-1), best, axis=-1)[
-                ..., 0
-            ]
+    def take(self, index: NDArray[np.int64]) -> Outcomes:
+        """(...) of outcomes (..., D): those of an index (...) in the last axis."""
+        at = index[..., None]
+        return self._each(lambda values: np.take_along_axis(values, at, axis=-1)[..., 0])
 
+    def reshape(self, shape: tuple[int, ...]) -> Outcomes:
+        """The same outcomes in arrays of another shape."""
+        return self._each(lambda values: values.reshape(shape))
+
+    def _each(self, change: Callable[[NDArray[Any]], NDArray[Any]]) -> Outcomes:
         return Outcomes(
-            picked(self.cause, none.cause),
-            picked(self.segment, none.segment),
-            picked(self.joint, none.joint),
-            picked(self.fraction, none.fraction),
+            change(self.cause),
+            change(self.segment),
+            change(self.joint),
+            change(self.fraction),
+            change(self.turn),
         )
 
     @property
@@ -98,19 +109,16 @@ class Outcomes:
 
     def replaced(self, where: Any, values: Outcomes) -> Outcomes:
         """A copy that has other outcomes at an index."""
-        changed = Outcomes(
-            self.cause.copy(), self.segment.copy(), self.joint.copy(), self.fraction.copy()
-        )
+        changed = self._each(np.copy)
         changed.cause[where] = values.cause
         changed.segment[where] = values.segment
         changed.joint[where] = values.joint
         changed.fraction[where] = values.fraction
+        changed.turn[where] = values.turn
         return changed
 
     def __getitem__(self, index: Any) -> Outcomes:
-        return Outcomes(
-            self.cause[index], self.segment[index], self.joint[index], self.fraction[index]
-        )
+        return self._each(lambda values: values[index])
 
     def codes(self) -> NDArray[np.str_]:
         """Short text of each outcome, as the paper's authors write it, counted from 1.
@@ -128,19 +136,20 @@ class Outcomes:
         return np.where(self.cause == Cause.NOT_TRIED, "-", text)
 
 
-def concatenate(parts: Iterable[Outcomes]) -> Outcomes:
-    """Join outcomes along their first axis."""
+def concatenate(parts: Iterable[Outcomes], axis: int = 0) -> Outcomes:
+    """Join outcomes along an axis."""
     parts = list(parts)
     return Outcomes(
-        np.concatenate([p.cause for p in parts]),
-        np.concatenate([p.segment for p in parts]),
-        np.concatenate([p.joint for p in parts]),
-        np.concatenate([p.fraction for p in parts]),
+        np.concatenate([p.cause for p in parts], axis=axis),
+        np.concatenate([p.segment for p in parts], axis=axis),
+        np.concatenate([p.joint for p in parts], axis=axis),
+        np.concatenate([p.fraction for p in parts], axis=axis),
+        np.concatenate([p.turn for p in parts], axis=axis),
     )
 
 
 def one_outcome(
-    cause: Cause, segment: int = -1, joint: int = -1, fraction: float = 1.0
+    cause: Cause, segment: int = -1, joint: int = -1, fraction: float = 1.0, turn: int = 0
 ) -> Outcomes:
     """A single outcome, arrays of shape ()."""
     return Outcomes(
@@ -148,6 +157,7 @@ def one_outcome(
         np.array(segment, dtype=np.int16),
         np.array(joint, dtype=np.int8),
         np.array(fraction, dtype=np.float32),
+        np.array(turn, dtype=np.int16),
     )
 
 
@@ -160,12 +170,17 @@ class Plan:
         segment: (m,) the segment each point lies in, from 0.
         s: (m,) how far along that segment, 0 to 1.
         outcome: of shape ().
+        guides: (g, 4, 4) X_WE where its segments end: the guiding poses, transferred and turned.
+        angles: (k + 1,) rad, by which each of k symmetric objects, and last the tool, is turned
+            about its axis; () where nothing is known of turns.
     """
 
     q: Array
     segment: NDArray[np.int64]
     s: Array
     outcome: Outcomes
+    guides: Array
+    angles: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def success(self) -> bool:

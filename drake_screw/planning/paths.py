@@ -6,6 +6,8 @@ A step of Dormand and Prince's pair is continued to a polynomial of fourth order
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from drake_screw.planning.compiled import Trace
@@ -20,7 +22,12 @@ FEWEST = 4
 
 
 def joint_paths(
-    outcomes: Outcomes, trace: Trace, q_start: Array, limits: Array
+    outcomes: Outcomes,
+    trace: Trace,
+    q_start: Array,
+    limits: Array,
+    guides: Sequence[Array],
+    angles: Array,
 ) -> tuple[Plan, ...]:
     """Sample the paths of plans.
 
@@ -32,6 +39,7 @@ def joint_paths(
         trace: of their steps.
         q_start: (n,) rad or m, where all start.
         limits: (2, n) lower and upper joint limits.
+        guides, angles: of each plan, as it has them.
     """
     parts = _parts(trace)
     step = np.repeat(np.arange(len(parts)), parts)
@@ -49,7 +57,8 @@ def joint_paths(
             nearer = np.abs(limits[:, joint] - path[-1, joint]).argmin()
             path[-1, joint] = limits[nearer, joint]
         segment = np.concatenate([[0], trace.segment[step[own]]])
-        plans.append(Plan(path, segment, np.concatenate([[0.0], s[own]]), outcome))
+        along = np.concatenate([[0.0], s[own]])
+        plans.append(Plan(path, segment, along, outcome, guides[i], angles[i]))
     return tuple(plans)
 
 

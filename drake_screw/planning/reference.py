@@ -60,13 +60,14 @@ class ReferencePlanner:
         """
         if not (np.isfinite(q_start).all() and np.isfinite(guides).all()):
             raise ValueError("the start and the guiding poses must be finite numbers")
+        guides = np.asarray(guides, dtype=float)
         path, segments, fractions = [np.array(q_start, dtype=float)], [0], [0.0]
         outcome = one_outcome(Cause.SUCCESS)
         margin = self.arm.margin(path[0])
         if (margin <= 0.0).any():
             outcome = one_outcome(Cause.JOINT_LIMIT, 0, int(np.argmin(margin)), 0.0)
-            return Plan(path[0][None], np.array(segments), np.array(fractions), outcome)
-        for segment, X_WG in enumerate(np.asarray(guides, dtype=float)):
+            return Plan(path[0][None], np.array(segments), np.array(fractions), outcome, guides)
+        for segment, X_WG in enumerate(guides):
             points, s, cause, joint = self._follow(path[-1], X_WG)
             path += points
             segments += [segment] * len(points)
@@ -74,7 +75,7 @@ class ReferencePlanner:
             if cause != Cause.SUCCESS:
                 outcome = one_outcome(cause, segment, joint, s[-1] if s else 0.0)
                 break
-        return Plan(np.array(path), np.array(segments), np.array(fractions), outcome)
+        return Plan(np.array(path), np.array(segments), np.array(fractions), outcome, guides)
 
     def _follow(self, q: Array, X_WG: Array) -> tuple[list[Array], list[float], Cause, int]:
         """One segment: its path after q, how far along each point is, cause and joint."""

@@ -123,6 +123,21 @@ class Arm:
         self._set(np.asarray(q, dtype=float))
         return self._E.CalcPoseInWorld(self._context).GetAsMatrix4(), self._jacobian()
 
+    def held(self, frame: str) -> Array:
+        """X_EF (4, 4) of a frame that is fixed to the end effector.
+
+        Raises:
+            ModelError: there is no such frame, or it moves against the end effector.
+        """
+        F = _frame(self.plant, frame)
+        if F.body() not in self.plant.GetBodiesWeldedTo(self._E.body()):
+            raise ModelError(
+                f"frame '{frame}' is not fixed to the end effector '{self.end_effector}'",
+                remedy="Name a frame of the link that carries the end effector.",
+            )
+        self._set(np.zeros(self.n))
+        return np.asarray(F.CalcPose(self._context, self._E).GetAsMatrix4())
+
     def margin(self, q: ArrayLike) -> Array:
         """Distance to the nearer limit, negative outside; (..., n) to (..., n), rad or m."""
         q = np.asarray(q, dtype=float)

@@ -86,6 +86,7 @@ def save_evaluation(file: Path, evaluation: Evaluation) -> None:
         "segment": outcomes.segment,
         "joint": outcomes.joint,
         "fraction": outcomes.fraction,
+        "turn": outcomes.turn,
         **_frontier_arrays(evaluation.frontier),
     }
     np.savez_compressed(file, **arrays)
@@ -99,7 +100,9 @@ def load_evaluation(file: Path) -> Evaluation:
             cut off, or not such a file.
     """
     with np.load(file) as data:
-        outcomes = Outcomes(data["cause"], data["segment"], data["joint"], data["fraction"])
+        none = np.zeros(data["cause"].shape, dtype=np.int16)  # as in runs from before turns
+        turn = data.get("turn", none)
+        outcomes = Outcomes(data["cause"], data["segment"], data["joint"], data["fraction"], turn)
         region = data["region"].astype(np.int64)
         return Evaluation(data["x_y_yaw"], region, outcomes, _frontier(data))
 

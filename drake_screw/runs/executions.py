@@ -87,12 +87,9 @@ def execute(
     by = outcomes.best_attempt
     solved = np.flatnonzero(outcomes.any_success)
     plans = setup.batch_planner.plans(
-        demonstrations, X_WO[solved], setup.workcell.start, by[solved]
+        demonstrations, X_WO[solved], setup.workcell.start, by[solved], outcomes.best.turn[solved]
     )
-    jobs = [
-        Job(plan, demonstrations[by[i]].transfer(X_WO[i]), X_WO[i])
-        for i, plan in zip(solved, plans, strict=True)
-    ]
+    jobs = [Job(plan, X_WO[i]) for i, plan in zip(solved, plans, strict=True)]
     config = StationConfig(setup.robot, setup.table, setup.objects)
     done = dict(zip(solved.tolist(), execute_all(config, jobs, workers=workers), strict=True))
     trials = []
@@ -220,7 +217,8 @@ def why_not(
             joint = setup.workcell.arm.joint_names[int(outcomes.joint[best])]
             return f"with {name}, {joint} meets its limit in segment {segment}"
         case Cause.COLLISION:
-            hit = planner.checker.explain(planner.planner.plan(chosen, X_WO, start), X_WO)
+            plan = planner.planner.plan(chosen, X_WO, start, int(outcomes.turn[best]))
+            hit = planner.checker.explain(plan, X_WO)
             return f"with {name}, {hit}"
         case _:
             return f"with {name}, segment {segment} is out of reach"

@@ -231,9 +231,10 @@ class RunReader:
         event = self.event(round)
         X_WO = self.setup.area.X_WO(event.evaluation.x_y_yaw[instance])
         workcell, demonstration = self.setup.workcell, event.demonstrations[number]
-        plan = self.setup.batch_planner.plan(demonstration, X_WO, workcell.start)
-        tried = attempt(workcell.arm, number, demonstration, X_WO, plan)
         found = event.evaluation.outcomes[instance][number]
+        turn = int(found.turn)
+        plan = self.setup.batch_planner.plan(demonstration, X_WO, workcell.start, turn)
+        tried = attempt(workcell.arm, number, demonstration, X_WO, plan)
         if int(found.cause) == Cause.COLLISION and int(tried.cause) != Cause.COLLISION:
             tried = replace(tried, plan=cut_short(tried.plan, found))
         if tried.cause == Cause.COLLISION:

@@ -88,8 +88,9 @@ def write_trajectory(
             remedy="Choose another instance, or carry the run on with more demonstrations.",
         )
     chosen = demonstrations[int(outcomes.best_attempt)]
-    plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start)
-    timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), chosen.transfer(X_WO)]), arm)
+    turn = int(outcomes.best.turn)
+    plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start, turn)
+    timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), plan.guides]), arm)
     output = Path(output)
     with writing(output, WRITABLE_OUTPUT):
         write_bytes(output, writer(timed, arm))

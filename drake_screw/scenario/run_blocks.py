@@ -157,5 +157,7 @@ class TeacherBlock(Block):
 class PlannerBlock(Block):
     tolerance: Annotated[Annotated[float, Field(ge=1e-9, lt=0.1)], RADIANS] = 1e-4
     """error per step of the joint path"""
+    turns: Annotated[int, Field(ge=1, le=360)] = 24
+    """turns that are tried of an object or tool that may be turned by any angle"""
     collision: bool = False
     """whether a plan that touches the robot itself, the table or an object fails"""

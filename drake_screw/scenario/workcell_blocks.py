@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -18,7 +18,7 @@ from drake_screw.scenario.values import (
     Name,
     Positive,
 )
-from drake_screw.tasks import AXES
+from drake_screw.tasks import AXES, Symmetry
 
 
 class RobotBlock(Block):
@@ -34,6 +34,8 @@ class RobotBlock(Block):
     """name of the frame fixed to the world's origin"""
     parked: Annotated[Angles, RADIANS] = Field(default={})
     """where other joints rest; joints not named rest at the model's default"""
+    tool: ToolBlock | None = None
+    """what the end effector holds"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
@@ -74,6 +76,30 @@ class TableBlock(Block):
     """thickness of the table's top"""
 
 
+class SymmetryBlock(Block):
+    axis: Literal["x", "y", "z"] = "z"
+    """axis of the frame, through its origin, about which turns leave the body as it is"""
+    turns: Literal["any"] | Annotated[int, Field(ge=2)]
+    """any for a body of revolution; else how many turns in a full one look the same: 4 for a
+    square box"""
+
+    @property
+    def symmetry(self) -> Symmetry:
+        axis = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}[self.axis]
+        return Symmetry(axis, None if self.turns == "any" else self.turns)
+
+
+class ToolBlock(Block):
+    frame: str | None = None
+    """name of the tool's frame, fixed to the end effector; the end effector's own if left out"""
+    xyz: Annotated[tuple[float, float, float], METRES] = (0.0, 0.0, 0.0)
+    """where the tool is in that frame"""
+    rpy: Annotated[tuple[float, float, float], RADIANS] = (0.0, 0.0, 0.0)
+    """how it is turned there: roll, pitch and yaw"""
+    symmetry: SymmetryBlock | None = None
+    """how it may be turned about an axis and do the same; left out if it may not"""
+
+
 class ObjectBlock(Block):
     name: Name
     """name of the object: letters, digits, - and _"""
@@ -89,6 +115,8 @@ class ObjectBlock(Block):
     """radius of the object, to draw it and for collisions"""
     height: Annotated[Positive, METRES]
     """height of the object, to draw it and for collisions"""
+    symmetry: SymmetryBlock | None = None
+    """how it may be turned about an axis and be the same to the task; left out if it may not"""
 
     def broken_rules(self) -> Iterator[Problem]:
         for axis in AXES:

@@ -3,6 +3,7 @@
 from drake_screw.tasks.boxes import BoxRegions, box_regions, free_axes, from_unit_box
 from drake_screw.tasks.regions import GridRegions, Regions, grid_regions
 from drake_screw.tasks.sampling import draw, draw_in_all, uniform
+from drake_screw.tasks.symmetry import Symmetry
 from drake_screw.tasks.work_area import AXES, ObjectArea, WorkArea
 
 __all__ = [
@@ -11,6 +12,7 @@ __all__ = [
     "GridRegions",
     "ObjectArea",
     "Regions",
+    "Symmetry",
     "WorkArea",
     "box_regions",
     "draw",

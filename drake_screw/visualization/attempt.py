@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,7 +28,6 @@ class Attempt:
         demonstration: what was carried over.
         X_WO: (k, 4, 4) the instance's objects.
         starts: (g, 4, 4) X_WE where each screw segment starts.
-        guides: (g, 4, 4) X_WE where each screw segment ends, the guiding poses.
         plan: up to where it failed if it did.
         bodies: names of the pairs of bodies that touch where the plan ended, after a collision.
     """
@@ -38,9 +37,13 @@ class Attempt:
     demonstration: Demonstration
     X_WO: Array
     starts: Array
-    guides: Array
     plan: Plan
     bodies: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def guides(self) -> Array:
+        """(g, 4, 4) X_WE where each screw segment ends, the guiding poses."""
+        return self.plan.guides
 
     @property
     def cause(self) -> Cause:
@@ -116,9 +119,8 @@ def attempt(
         plan: what came of it.
     """
     X_WO = np.asarray(X_WO, dtype=float)
-    guides = demonstration.transfer(X_WO)
-    starts = np.concatenate([arm.pose(plan.q[:1]), guides])[:-1]
-    return Attempt(arm, number, demonstration, X_WO, starts, guides, plan)
+    starts = np.concatenate([arm.pose(plan.q[:1]), plan.guides])[:-1]
+    return Attempt(arm, number, demonstration, X_WO, starts, plan)
 
 
 def cut_short(plan: Plan, outcome: Outcomes) -> Plan:
@@ -131,14 +133,16 @@ def cut_short(plan: Plan, outcome: Outcomes) -> Plan:
     k = int(np.searchsorted(progress, end))
     if k == 0 or k == len(progress):
         kept = slice(0, max(k, 1))
-        return Plan(plan.q[kept], plan.segment[kept], plan.s[kept], outcome)
+        q, segments, s = plan.q[kept], plan.segment[kept], plan.s[kept]
+        return replace(plan, q=q, segment=segments, s=s, outcome=outcome)
     share = (end - progress[k - 1]) / (progress[k] - progress[k - 1])
     last = plan.q[k - 1] + share * (plan.q[k] - plan.q[k - 1])
-    return Plan(
-        np.concatenate([plan.q[:k], last[None]]),
-        np.append(plan.segment[:k], segment),
-        np.append(plan.s[:k], fraction),
-        outcome,
+    return replace(
+        plan,
+        q=np.concatenate([plan.q[:k], last[None]]),
+        segment=np.append(plan.segment[:k], segment),
+        s=np.append(plan.s[:k], fraction),
+        outcome=outcome,
     )
 
 

@@ -66,7 +66,13 @@ class Disks:
         solved = self.solves(places, demonstrations)
         cause = np.where(solved, Cause.SUCCESS, Cause.JOINT_LIMIT).astype(np.uint8)
         segment = np.where(solved, -1, (places[:, 0, 0, None] > 0.75).astype(int)).astype(np.int16)
-        outcomes = Outcomes(cause, segment, segment.astype(np.int8), solved.astype(np.float32))
+        outcomes = Outcomes(
+            cause,
+            segment,
+            segment.astype(np.int8),
+            solved.astype(np.float32),
+            np.zeros_like(segment),
+        )
         return Evaluation(places, np.concatenate(region), outcomes), verdict
 
     def solves(self, places, demonstrations):

@@ -38,7 +38,11 @@ class Nearby:
         cause = np.where(served, Cause.SUCCESS, Cause.UNREACHABLE).astype(np.uint8)
         segment = np.where(served, -1, 2).astype(np.int16)
         return Outcomes(
-            cause, segment, np.full_like(segment, -1, dtype=np.int8), served.astype(np.float32)
+            cause,
+            segment,
+            np.full_like(segment, -1, dtype=np.int8),
+            served.astype(np.float32),
+            np.zeros_like(segment),
         )
 
 

@@ -49,7 +49,7 @@ def plan(workcell: Workcell, lesson: Demonstration) -> Plan:
 
 
 def test_it_is_executed(config: StationConfig, lesson: Demonstration, plan: Plan) -> None:
-    (done,) = execute_all(config, [Job(plan, lesson.transfer(X_WO), X_WO)], workers=1)
+    (done,) = execute_all(config, [Job(plan, X_WO)], workers=1)
     assert done.report.flawless, str(done.report.status)
     assert done.report.tracking.position < 5e-3
 

@@ -115,6 +115,7 @@ def test_a_segment_without_motion_takes_the_smoothing_time(arm, plan) -> None:
         np.zeros(3, dtype=int),
         np.array([0.0, 0.5, 1.0]),
         one_outcome(Cause.SUCCESS),
+        X[None],
     )
     timed = time_plan(still, np.stack([X, X]), arm)
     assert timed.duration == pytest.approx(TimeLimits().smoothing)
@@ -124,7 +125,8 @@ def test_a_segment_without_motion_takes_the_smoothing_time(arm, plan) -> None:
 def test_few_points_are_enough(arm, plan, guides) -> None:
     """A plan may come with its ends only."""
     ends = [0, int(np.flatnonzero(plan.segment == 0)[-1])]
-    short = Plan(plan.q[ends], plan.segment[ends], np.array([0.0, 1.0]), plan.outcome)
+    s = np.array([0.0, 1.0])
+    short = replace(plan, q=plan.q[ends], segment=plan.segment[ends], s=s)
     timed = time_plan(short, np.stack([arm.pose(plan.q[0]), guides[0]]), arm)
     np.testing.assert_allclose(timed.segments[0].q[[0, -1]], short.q, atol=1e-12)
 

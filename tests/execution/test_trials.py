@@ -27,8 +27,8 @@ def config(robot) -> StationConfig:
 
 
 @pytest.fixture(scope="module")
-def executed(config, plan, guides):
-    return list(execute_all(config, [Job(plan, guides, X_WO)], workers=1))
+def executed(config, plan):
+    return list(execute_all(config, [Job(plan, X_WO)], workers=1))
 
 
 @pytest.fixture
@@ -58,8 +58,8 @@ def test_logs_come_back_thinned_out_with_both_ends(executed) -> None:
     assert len(t) == len(executed[0].q) < 200
 
 
-def test_other_processes_answer_the_same(config, plan, guides, executed) -> None:
-    jobs = [Job(plan, guides, X_WO)] * 2
+def test_other_processes_answer_the_same(config, plan, executed) -> None:
+    jobs = [Job(plan, X_WO)] * 2
     for execution in execute_all(config, jobs, workers=2):
         assert execution.report == executed[0].report
 

@@ -53,7 +53,8 @@ def scissors(tmp_path_factory: pytest.TempPathFactory) -> PlanChecker:
 def straight(*q: list[float]) -> Plan:
     """A plan of one segment with these points."""
     s = np.linspace(0.0, 1.0, len(q))
-    return Plan(np.array(q), np.zeros(len(q), dtype=int), s, one_outcome(Cause.SUCCESS))
+    done = one_outcome(Cause.SUCCESS)
+    return Plan(np.array(q), np.zeros(len(q), dtype=int), s, done, np.eye(4)[None])
 
 
 def standing(x: float, y: float) -> np.ndarray:

@@ -20,7 +20,7 @@ screw = np.array([0.0, 0.0, 1.0, 0.0, float(sys.argv[1]), 0.0])
 kernel = Kernel(screw[None], np.eye(4), np.array([-1.0]), np.array([1.0]))
 before = kernel.compiled
 goals = exp(np.array([[[0.5 * screw]], [[1.5 * screw]]]))[:, 0]
-plans = kernel.plan([np.eye(4)[None]], [np.zeros(1, int)], goals, np.zeros(1))
+(plans,) = kernel.plan([np.eye(4)[None]], [np.zeros(1, int)], goals, np.zeros(1))
 assert plans.cause.ravel().tolist() == [Cause.SUCCESS, Cause.JOINT_LIMIT]
 assert abs(plans.fraction[1, 0] - 1 / 1.5) < 1e-6
 loaded = sum(kernel._module.run.stats.cache_hits.values())
@@ -38,7 +38,7 @@ for n in map(int, sys.argv[1:]):
     screws[:, 3 : 3 + n] = np.eye(n)
     goals[0, 0, :n, 3], goals[1, 0, n - 1, 3] = 0.5, 1.5
     kernel = Kernel(screws, np.eye(4), -np.ones(n), np.ones(n))
-    plans = kernel.plan([np.eye(4)[None]], [np.zeros(1, int)], goals, np.zeros(n))
+    (plans,) = kernel.plan([np.eye(4)[None]], [np.zeros(1, int)], goals, np.zeros(n))
     assert plans.cause.ravel().tolist() == [Cause.SUCCESS, Cause.JOINT_LIMIT], (n, plans.cause)
     assert plans.joint[1, 0] == n - 1
     assert abs(plans.fraction[1, 0] - 1 / 1.5) < 1e-6

@@ -19,6 +19,7 @@ def outcomes(rows: list[list[tuple[Cause, int, int]]]) -> Outcomes:
         segment.astype(np.int16),
         joint.astype(np.int8),
         np.where(cause == Cause.SUCCESS, 1.0, 0.5).astype(np.float32),
+        np.zeros(cause.shape, dtype=np.int16),
     )
 
 
@@ -103,7 +104,7 @@ def test_indexing_and_concatenation() -> None:
     np.testing.assert_array_equal(table[:, 0].codes(), table.codes()[:, 0])
     assert table[0, 1].codes() == "3:6"
     whole = concatenate(table[i : i + 1] for i in range(3))
-    for name in ("cause", "segment", "joint", "fraction"):
+    for name in ("cause", "segment", "joint", "fraction", "turn"):
         np.testing.assert_array_equal(getattr(whole, name), getattr(table, name))
         assert getattr(whole, name).dtype == getattr(table, name).dtype
 
@@ -111,6 +112,10 @@ def test_indexing_and_concatenation() -> None:
 @pytest.mark.parametrize(("cause", "succeeds"), [(Cause.SUCCESS, True), (Cause.JOINT_LIMIT, False)])
 def test_a_plan_knows_whether_it_succeeded(cause: Cause, succeeds: bool) -> None:
     plan = Plan(
-        np.zeros((1, 7)), np.zeros(1, dtype=int), np.zeros(1), one_outcome(cause, 0, 0, 0.5)
+        np.zeros((1, 7)),
+        np.zeros(1, dtype=int),
+        np.zeros(1),
+        one_outcome(cause, 0, 0, 0.5),
+        np.eye(4)[None],
     )
     assert plan.success is succeeds

@@ -30,7 +30,7 @@ def evaluation(region: np.ndarray) -> Evaluation:
     N = len(region)
     outcomes = Outcomes(
         np.zeros((N, 1), "u1"), np.full((N, 1), -1, "i2"), np.full((N, 1), -1, "i1"),
-        np.ones((N, 1), "f4"),
+        np.ones((N, 1), "f4"), np.zeros((N, 1), "i2"),
     )  # fmt: skip
     return Evaluation(np.zeros((N, 1, 3)), region, outcomes)
 

@@ -75,6 +75,7 @@ def test_outcomes_are_written_as_codes() -> None:
         np.array([[-1, 2], [0, 1]], "i2"),
         np.array([[-1, 4], [-1, -1]], "i1"),
         np.ones((2, 2), "f4"),
+        np.zeros((2, 2), "i2"),
     )
     x_y_yaw = np.array([[[0.6, 0.1, 0.25]], [[0.7, 0.2, 0.25]]])
     text = outcomes_csv(x_y_yaw, outcomes, ["a", "b"], ONE)
@@ -89,6 +90,7 @@ def test_names_with_commas_stay_in_their_column() -> None:
         np.array([[-1, 0]], "i2"),
         np.full((1, 2), -1, "i1"),
         np.ones((1, 2), "f4"),
+        np.zeros((1, 2), "i2"),
     )
     names = ["demo, second try", 'the "good" one']
     text = outcomes_csv(np.array([[[0.6, 0.1, 0.25]]]), outcomes, names, ONE)

@@ -104,4 +104,6 @@ def _outcomes(cause: np.ndarray) -> Outcomes:
     failed = cause != Cause.SUCCESS
     segment = np.where(failed, 1, -1).astype(np.int16)
     joint = np.where(cause == Cause.JOINT_LIMIT, 3, -1).astype(np.int8)
-    return Outcomes(cause, segment, joint, np.where(failed, 0.5, 1.0).astype(np.float32))
+    return Outcomes(
+        cause, segment, joint, np.where(failed, 0.5, 1.0).astype(np.float32), 0 * segment
+    )

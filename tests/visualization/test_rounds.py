@@ -13,7 +13,7 @@ from tests.visualization.conftest import BOWL
 def outcomes(cause: list[list[int]], segment: list[list[int]], fraction: float = 0.5) -> Outcomes:
     c, s = np.array(cause, dtype=np.uint8), np.array(segment, dtype=np.int16)
     joint = np.full(c.shape, -1, dtype=np.int8)
-    return Outcomes(c, s, joint, np.full(c.shape, fraction, dtype=np.float32))
+    return Outcomes(c, s, joint, np.full(c.shape, fraction, dtype=np.float32), 0 * s)
 
 
 def test_an_instance_fails_as_its_best_attempt_did() -> None:

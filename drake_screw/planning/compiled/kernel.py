@@ -24,11 +24,21 @@ T = TypeVar("T")
 CHUNK = 2048
 """Plans, about, that a thread takes at a time."""
 
+LIKELY = 4
+"""Plans, about, in a run of several before one succeeds."""
+
 TRACED = 256
 """Plans that a thread takes at a time where their steps are written down."""
 
 Order = Callable[[Array], NDArray[np.int64]]
 """From object poses (N, k, 4, 4) to the order (N, D) in which demonstrations are tried."""
+
+Place = Callable[[Array], Array]
+"""From object poses (N, k, 4, 4) to the frames (N, m, 4, 4) that guiding poses belong to."""
+
+
+def _as_they_are(X_WO: Array) -> Array:
+    return X_WO
 
 
 class Kernel:
@@ -76,9 +86,10 @@ class Kernel:
         q_start: Array,
         order: Order | None = None,
         *,
-        stop_at_success: bool = False,
+        run: int = 1,
+        place: Place = _as_they_are,
         threads: int | None = None,
-    ) -> Answers:
+    ) -> list[Answers]:
         """Plans for N instances with D demonstrations.
 
         Args:
@@ -87,24 +98,31 @@ class Kernel:
             X_WO: (N, k, 4, 4) object poses.
             q_start: (n,) start configuration, inside the limits.
             order: in which to try the demonstrations; as given if None.
-            stop_at_success: leave out the demonstrations after the first that succeeds.
+            run: leave out the demonstrations after the first that succeeds, in each run of so many
+                in that order; D is a multiple of it.
+            place: takes X_WO (m, k, 4, 4) to the frames that `objects` are indices of.
             threads: to use; all processors if None.
+
+        Returns:
+            Answers (m, D) for successive instances.
         """
         N, D = len(X_WO), len(X_OE)
-        answers = _unanswered(N, D, new_trace(np.zeros(0, dtype=np.int64), len(q_start)))
+        nothing = new_trace(np.zeros(0, dtype=np.int64), len(q_start))
         if N == 0 or D == 0:
-            return answers
+            return [_unanswered(N, D, nothing)]
         problem = self._problem(X_OE, objects, q_start)
         as_given = np.arange(D)[None]
-        size = D if stop_at_success else 1
 
-        def work(part: slice) -> None:
+        def work(part: slice) -> Answers:
+            answers = _unanswered(part.stop - part.start, D, nothing)
             tried = as_given if order is None else np.ascontiguousarray(order(X_WO[part]))
-            self._run(problem, X_WO[part], tried, size, answers.part(part))
+            self._run(problem, place(X_WO[part]), tried, run, answers)
+            return answers
 
-        _share(work, _parts(N, max(LANES, CHUNK // D)), threads)
+        likely = D if run == 1 else D // run * LIKELY
+        found = _share(work, _parts(N, max(LANES, CHUNK // likely)), threads)
         arm_module.mark_compiled(self._module)
-        return answers
+        return found
 
     def trace(
         self,
@@ -114,6 +132,7 @@ class Kernel:
         q_start: Array,
         which: NDArray[np.int64],
         *,
+        place: Place = _as_they_are,
         threads: int | None = None,
     ) -> list[Answers]:
         """Plans for N instances, each with one demonstration, and the steps that were taken.
@@ -122,7 +141,7 @@ class Kernel:
         not depend on its neighbours, so that both take the same, which are also those of `plan`.
 
         Args:
-            X_OE, objects, X_WO, q_start, threads: as for `plan`.
+            X_OE, objects, X_WO, q_start, place, threads: as for `plan`.
             which: (N,) the demonstration of each instance.
 
         Returns:
@@ -136,7 +155,7 @@ class Kernel:
             for _ in range(2):
                 trace = new_trace(places, len(q_start))
                 answers = _unanswered(len(places), len(X_OE), trace)
-                self._run(problem, X_WO[part], tried[part], 1, answers)
+                self._run(problem, place(X_WO[part]), tried[part], 1, answers)
                 places = trace.steps
             return answers.part((np.arange(len(places))[:, None], tried[part]))
 
@@ -166,7 +185,7 @@ class Kernel:
         size: int,
         answers: Answers,
     ) -> None:
-        """Fill in answers for instances, in units of so many demonstrations."""
+        """Fill in answers for instances, in runs of so many demonstrations."""
         problem = problem._replace(X_BO=np.ascontiguousarray(self._X_BW @ X_WO), order=order)
         queue = np.array([0, len(X_WO) * order.shape[1] // size, size])
         b, lanes = np.zeros(self._count * LANES), np.zeros((LANES, 7), dtype=np.int64)

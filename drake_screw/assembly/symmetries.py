@@ -1,0 +1,29 @@
+"""The turns that a scenario declares to leave its task as it is."""
+
+from __future__ import annotations
+
+from pydrake.math import RollPitchYaw
+
+from drake_screw.planning import Symmetries
+from drake_screw.robot import Arm
+from drake_screw.scenario.schema import Scenario
+from drake_screw.screws import pose
+from drake_screw.tasks import Symmetry
+
+
+def symmetries(scenario: Scenario, arm: Arm) -> Symmetries:
+    """Of the objects, and of what the end effector holds.
+
+    Raises:
+        ModelError: the tool's frame is not one that the end effector carries.
+    """
+    objects: list[Symmetry | None] = [
+        None if o.symmetry is None else o.symmetry.symmetry for o in scenario.objects
+    ]
+    tool, tried, chain = scenario.robot.tool, scenario.planner.turns, arm.screw_chain()
+    if tool is None:
+        return Symmetries.of(chain, objects, tried=tried)
+    rotation = RollPitchYaw(tool.rpy).ToRotationMatrix().matrix()
+    X_ET = arm.held(tool.frame or arm.end_effector) @ pose(rotation, tool.xyz)
+    held = None if tool.symmetry is None else tool.symmetry.symmetry
+    return Symmetries.of(chain, objects, held, X_ET, tried)
