@@ -25,6 +25,7 @@ class Trial:
         x_y_yaw: (k, 3) m, m, rad.
         demonstration: the name of the one it was planned with; empty if none gives a plan.
         reason: why there is no plan; empty if there is one.
+        turned: rad, by which symmetric objects are turned in the plan, by their names.
         execution: what was done; None without a plan.
     """
 
@@ -33,6 +34,7 @@ class Trial:
     demonstration: str
     reason: str
     execution: Execution | None
+    turned: tuple[tuple[str, float], ...] = ()
 
     @property
     def report(self) -> ExecutionReport | None:
@@ -47,7 +49,16 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
     segment, contacts name both bodies.
     """
     places = [f"{o.name}_{axis}" for o in area.objects for axis in AXES]
-    header = ["region", *places, "demonstration", "status", "segment", "reason", *_MEASURES]
+    header = [
+        "region",
+        *places,
+        "demonstration",
+        "turned_rad",
+        "status",
+        "segment",
+        "reason",
+        *_MEASURES,
+    ]
     file = io.StringIO()
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(header)
@@ -60,7 +71,8 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
             segment = "" if report.status.segment is None else str(report.status.segment + 1)
             said = [report.status.phase.value, segment, report.status.reason]
             said += [measure(report) for measure in _MEASURES.values()]
-        rows.writerow([trial.region, *place, trial.demonstration, *said])
+        turned = ";".join(f"{body} {angle:.4f}" for body, angle in trial.turned)
+        rows.writerow([trial.region, *place, trial.demonstration, turned, *said])
     return file.getvalue()
 
 

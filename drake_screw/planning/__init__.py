@@ -4,7 +4,7 @@ from drake_screw.planning.batch import BatchPlanner
 from drake_screw.planning.outcomes import Cause, Outcomes, Plan, concatenate
 from drake_screw.planning.planner import Planner
 from drake_screw.planning.reference import ReferencePlanner
-from drake_screw.planning.symmetry import Symmetries
+from drake_screw.planning.symmetry import Symmetries, Turned
 
 __all__ = [
     "BatchPlanner",
@@ -14,5 +14,6 @@ __all__ = [
     "Planner",
     "ReferencePlanner",
     "Symmetries",
+    "Turned",
     "concatenate",
 ]

@@ -99,8 +99,8 @@ class Columns:
             return found
         N, D = len(answers.cause), len(self.demonstrations)
         if len(np.unique(self.counts)) == 1:
-            return best_turn(found.reshape((N, D, -1)))
-        ends = zip(self.first, self.first[1:], strict=True)
+            return best_turn(found.reshape((N, D, int(self.counts[0]))))
+        ends = zip(self.first[:-1], self.first[1:], strict=True)
         return concatenate([best_turn(found[:, a:b])[:, None] for a, b in ends], axis=1)
 
 

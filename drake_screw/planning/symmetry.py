@@ -16,13 +16,37 @@ from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.robot import ScrewChain
-from drake_screw.screws import inverse, skew
+from drake_screw.screws import inverse, pose, skew
 from drake_screw.screws.rotations import cross
 from drake_screw.tasks import Symmetry
 from drake_screw.typing import Array
 
 TRIED = 24
 """Turns that are tried of a body that may be turned by any angle."""
+
+
+TOOL = "tool"
+"""What the end effector holds goes by that name."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """A symmetric body as a plan turns it.
+
+    Attributes:
+        body: name of the object, or TOOL.
+        angle: rad, about its axis, from where it stands in the instance; in (-pi, pi].
+        X_FT: (4, 4) T turns with the body: its z axis is that of the symmetry, and at an angle of
+            0 its x axis is across it. F is the world, or of the tool the end effector.
+    """
+
+    body: str
+    angle: float
+    X_FT: Array
+
+    def __str__(self) -> str:
+        degrees = f"{np.degrees(self.angle):+.0f}°".replace("-", "−")
+        return f"the {self.body} turned by {degrees}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +147,31 @@ class Symmetries:
         turned = self.turned(X_WO, angles[..., :-1])
         return demonstration.transfer(turned) @ self._of_tool(angles[..., -1])[..., None, :, :]
 
+    def named(
+        self,
+        demonstration: Demonstration,
+        X_WO: Array,
+        angles: Array,
+        names: Sequence[str],
+    ) -> tuple[Turned, ...]:
+        """How each symmetric body is turned.
+
+        Args:
+            demonstration: that is carried over.
+            X_WO: (k, 4, 4) the objects.
+            angles: (k + 1,) rad, as `angles` has them.
+            names: of the k objects.
+        """
+        found = []
+        for body in self.bodies(demonstration):
+            symmetry, X_FB = self._of(body), self.X_ET if body < 0 else X_WO[body]
+            axes = np.stack([*_plane(np.array(symmetry.axis)), symmetry.axis], axis=-1)
+            angle = float(-np.remainder(np.pi - angles[body], 2.0 * np.pi) + np.pi)
+            turn = _turns(np.array(symmetry.axis), np.array(angle))
+            name = TOOL if body < 0 else names[body]
+            found.append(Turned(name, angle, X_FB @ turn @ pose(axes, np.zeros(3))))
+        return tuple(found)
+
     def turned(self, X_WO: ArrayLike, angles: ArrayLike) -> Array:
         """Object poses (..., k, 4, 4), each turned by an angle (..., k) in rad about its axis."""
         axes = np.array([(0.0, 0.0, 0.0) if s is None else s.axis for s in self.objects])
@@ -203,6 +252,6 @@ def _angle(w: Array, u: Array, v: Array) -> Array:
 
 def _plane(a: Array) -> Array:
     """(2, 3) two unit vectors that make a right-handed frame with the unit vector a (3,)."""
-    least = np.eye(3)[np.abs(a).argmin()]
+    least = np.eye(3)[2 - np.abs(a)[::-1].argmin()]
     first = cross(least, a) / np.linalg.norm(cross(least, a))
     return np.stack([first, cross(a, first)])

@@ -15,7 +15,7 @@ from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
-from drake_screw.planning import Cause, Outcomes, concatenate
+from drake_screw.planning import Cause, Outcomes, Plan, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.runs.run import Run, open_run
 from drake_screw.tasks import draw_in_all
@@ -92,6 +92,10 @@ def execute(
     jobs = [Job(plan, X_WO[i]) for i, plan in zip(solved, plans, strict=True)]
     config = StationConfig(setup.robot, setup.table, setup.objects)
     done = dict(zip(solved.tolist(), execute_all(config, jobs, workers=workers), strict=True))
+    turns = {
+        i: _turned(setup, demonstrations[by[i]], X_WO[i], plan)
+        for i, plan in zip(solved.tolist(), plans, strict=True)
+    }
     trials = []
     for i, place in enumerate(x_y_yaw):
         execution = done.get(i)
@@ -100,7 +104,7 @@ def execute(
         if i not in done:
             why = why_not(outcomes[i], demonstrations, X_WO[i], planner, setup)
         region = int(setup.regions.index(place))
-        trials.append(Trial(region, place, name, why, execution))
+        trials.append(Trial(region, place, name, why, execution, turns.get(i, ())))
     found = summarize(trials)
 
     def fill(folder: Path) -> None:
@@ -121,6 +125,14 @@ def execute(
     with writing(folder, remedy):
         write_folder(folder, fill)
     return Executions(folder, found)
+
+
+def _turned(
+    setup: Setup, demonstration: Demonstration, X_WO: Array, plan: Plan
+) -> tuple[tuple[str, float], ...]:
+    names = [o.name for o in setup.area.objects]
+    turned = setup.symmetries.named(demonstration, X_WO, plan.angles, names)
+    return tuple((turn.body, turn.angle) for turn in turned)
 
 
 def station_graphviz(run: PathLike) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -72,7 +73,13 @@ def read_instances(file: Path, area: WorkArea) -> Array:
     return x_y_yaw[kept]
 
 
-def outcomes_csv(x_y_yaw: Array, outcomes: Outcomes, names: list[str], area: WorkArea) -> str:
+def outcomes_csv(
+    x_y_yaw: Array,
+    outcomes: Outcomes,
+    names: list[str],
+    area: WorkArea,
+    turns: Mapping[str, Array] | None = None,
+) -> str:
     """A row for each instance: where it is, then the outcome code of each demonstration.
 
     Codes are ``Outcomes.codes``; yaw gets a column where it varies.
@@ -82,6 +89,7 @@ def outcomes_csv(x_y_yaw: Array, outcomes: Outcomes, names: list[str], area: Wor
         outcomes: (N, D).
         names: of the D demonstrations.
         area: names the k objects.
+        turns: further columns (N,) of angles in rad, by their names: how bodies are turned.
     """
     header, cells = [], []
     for i, item in enumerate(area.objects):
@@ -92,4 +100,6 @@ def outcomes_csv(x_y_yaw: Array, outcomes: Outcomes, names: list[str], area: Wor
             header.append(axis if len(area.objects) == 1 else f"{item.name}.{axis}")
             cells.append([f"{v:.9g}" for v in values.tolist()])
     cells += outcomes.codes().T.tolist()
-    return csv_text([[*header, *names], *zip(*cells, strict=True)])
+    turns = turns or {}
+    cells += [[f"{v:.4f}" for v in column.tolist()] for column in turns.values()]
+    return csv_text([[*header, *names, *turns], *zip(*cells, strict=True)])

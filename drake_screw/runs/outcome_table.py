@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from drake_screw.assembly.setup import Setup
+from drake_screw.demonstrations import Demonstration
 from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
+from drake_screw.planning import Outcomes
+from drake_screw.planning.symmetry import TOOL
 from drake_screw.runs.instance_tables import outcomes_csv, read_instances
 from drake_screw.scenario.schema import Scenario
-from drake_screw.typing import PathLike
+from drake_screw.typing import Array, PathLike
 
 
 @dataclass(frozen=True)
@@ -52,7 +58,8 @@ def tabulate_outcomes(
         scenario: gives robot, start configuration, objects and segmentation.
         demonstrations: folder of recordings, of the robot that the scenario says they are of.
         instances: CSV to read, see `read_instances`.
-        output: CSV to write, see `outcomes_csv`.
+        output: CSV to write, see `outcomes_csv`; with a column `demonstration:body` for each body
+            that a demonstration may turn.
 
     Raises:
         DrakeScrewError: anything that cannot be read or written; nothing is written then.
@@ -63,7 +70,8 @@ def tabulate_outcomes(
     began = time.perf_counter()
     outcomes = setup.evaluate(learned, x_y_yaw)
     seconds = time.perf_counter() - began
-    text = outcomes_csv(x_y_yaw, outcomes, [d.name for d in learned], setup.area)
+    turns = _turns(setup, learned, setup.area.X_WO(x_y_yaw), outcomes)
+    text = outcomes_csv(x_y_yaw, outcomes, [d.name for d in learned], setup.area, turns)
     with writing(output, WRITABLE_OUTPUT):
         write_text(output, text)
     rates = outcomes.success.mean(axis=0).tolist()
@@ -75,3 +83,20 @@ def tabulate_outcomes(
         solved=float(outcomes.any_success.mean()),
         seconds=seconds,
     )
+
+
+def _turns(
+    setup: Setup, demonstrations: Sequence[Demonstration], X_WO: Array, outcomes: Outcomes
+) -> dict[str, Array]:
+    """Columns (N,) for each demonstration and each symmetric body that it turns, rad."""
+    names = [*(o.name for o in setup.area.objects), TOOL]
+    columns = {}
+    for d, demonstration in enumerate(demonstrations):
+        bodies = setup.symmetries.bodies(demonstration)
+        if not bodies:
+            continue
+        angles = setup.symmetries.angles(demonstration, X_WO, outcomes.turn[:, d])
+        for body in bodies:
+            turned = np.remainder(angles[:, body] + np.pi, 2.0 * np.pi) - np.pi
+            columns[f"{demonstration.name}:{names[body]}"] = turned
+    return columns

@@ -234,7 +234,9 @@ class RunReader:
         found = event.evaluation.outcomes[instance][number]
         turn = int(found.turn)
         plan = self.setup.batch_planner.plan(demonstration, X_WO, workcell.start, turn)
-        tried = attempt(workcell.arm, number, demonstration, X_WO, plan)
+        names = [o.name for o in self.setup.area.objects]
+        turned = self.setup.symmetries.named(demonstration, X_WO, plan.angles, names)
+        tried = replace(attempt(workcell.arm, number, demonstration, X_WO, plan), turned=turned)
         if int(found.cause) == Cause.COLLISION and int(tried.cause) != Cause.COLLISION:
             tried = replace(tried, plan=cut_short(tried.plan, found))
         if tried.cause == Cause.COLLISION:

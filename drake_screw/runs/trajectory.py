@@ -34,6 +34,7 @@ class Trajectory:
         demonstration: name of the one whose plan it is.
         segments: screw segments of the plan.
         duration: s.
+        turned: how symmetric objects are turned, in words; empty where there is none.
         outside: whether the instance lies outside the work area.
     """
 
@@ -42,6 +43,7 @@ class Trajectory:
     demonstration: str
     segments: int
     duration: float
+    turned: str
     outside: bool
 
     def __str__(self) -> str:
@@ -50,7 +52,7 @@ class Trajectory:
             [
                 *lines,
                 f"planned with {self.demonstration}: {self.segments} screw segments, "
-                f"{self.duration:.1f} s",
+                f"{self.duration:.1f} s{self.turned and f', with {self.turned}'}",
                 f"written to {self.output}",
             ]
         )
@@ -91,6 +93,8 @@ def write_trajectory(
     turn = int(outcomes.best.turn)
     plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start, turn)
     timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), plan.guides]), arm)
+    named = [o.name for o in setup.area.objects]
+    turned = setup.symmetries.named(chosen, X_WO, plan.angles, named)
     output = Path(output)
     with writing(output, WRITABLE_OUTPUT):
         write_bytes(output, writer(timed, arm))
@@ -100,6 +104,7 @@ def write_trajectory(
         demonstration=chosen.name,
         segments=len(timed.segments),
         duration=timed.duration,
+        turned=" and ".join(map(str, turned)),
         outside=not setup.area.contains(x_y_yaw),
     )
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning import Cause, Outcomes, Plan
+from drake_screw.planning import Cause, Outcomes, Plan, Turned
 from drake_screw.robot import Arm
 from drake_screw.screws import Screw, screw_between
 from drake_screw.typing import Array
@@ -29,6 +29,7 @@ class Attempt:
         X_WO: (k, 4, 4) the instance's objects.
         starts: (g, 4, 4) X_WE where each screw segment starts.
         plan: up to where it failed if it did.
+        turned: how symmetric bodies are turned.
         bodies: names of the pairs of bodies that touch where the plan ended, after a collision.
     """
 
@@ -38,6 +39,7 @@ class Attempt:
     X_WO: Array
     starts: Array
     plan: Plan
+    turned: tuple[Turned, ...] = ()
     bodies: tuple[tuple[str, str], ...] = ()
 
     @property
@@ -152,11 +154,11 @@ def headline(attempt: Attempt) -> str:
     if plan.success:
         joint, margin = attempt.tightest
         return (
-            f"succeeds in all {total} screw segments; {arm.joint_names[joint]} comes nearest to a "
-            f"limit, {margin:.3f} {arm.units[joint]} away"
+            f"succeeds in all {total} screw segments{_turns(attempt)}; {arm.joint_names[joint]} "
+            f"comes nearest to a limit, {margin:.3f} {arm.units[joint]} away"
         )
     segment, fraction = int(plan.outcome.segment), float(plan.outcome.fraction)
-    where = f"in screw segment {segment + 1} of {total}, {fraction:.1%} along it"
+    where = f"in screw segment {segment + 1} of {total}, {fraction:.1%} along it{_turns(attempt)}"
     if attempt.cause == Cause.JOINT_LIMIT:
         joint = int(plan.outcome.joint)
         which, limit = "lower", arm.lower[joint]
@@ -173,6 +175,13 @@ def headline(attempt: Attempt) -> str:
         f"fails {where}: the end effector gets no farther along this screw; the arm is stretched "
         "out or near a singular pose"
     )
+
+
+def _turns(attempt: Attempt) -> str:
+    if not attempt.turned:
+        return ""
+    turned = " and ".join(map(str, attempt.turned))
+    return f", with {turned}" if attempt.plan.success else f", at best, with {turned}"
 
 
 def describe_segment(attempt: Attempt, segment: int) -> str:

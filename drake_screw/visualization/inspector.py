@@ -1,8 +1,9 @@
 """An attempt in Meshcat: its screws, its frames, the arm along its plan, and where it failed.
 
 Under ``/attempts/01`` and so on, one for each demonstration drawn: ``segments/01``, ... (the end
-effector's path), ``axes/01``, ... (the screws), ``frames`` (the guiding poses), ``ghost`` (the arm
-where the plan failed) and ``dial`` (the range of the joint at its limit, with a needle). Under
+effector's path), ``axes/01``, ... (the screws), ``frames`` (the guiding poses), ``turned`` (how
+symmetric objects are turned), ``ghost`` (the arm where the plan failed) and ``dial`` (the range of
+the joint at its limit, with a needle). Under
 ``/instance`` the objects. The robot itself is the one of `Scene`, at ``/workcell``.
 """
 
@@ -17,7 +18,7 @@ from pydrake.geometry import Meshcat
 from drake_screw.robot import ObjectConfig, Workcell
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes, screw_shapes
-from drake_screw.visualization.attempt import AHEAD, FAILED, Attempt
+from drake_screw.visualization.attempt import AHEAD, DONE, FAILED, Attempt
 from drake_screw.visualization.drawing import draw, draw_frames
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
@@ -93,6 +94,7 @@ class Inspector:
             color = STATUS_COLORS[status]
             draw_screw(self.meshcat, f"{path}/axes/{segment + 1:02d}", X_WA, X_WB, color)
         draw_frames(self.meshcat, f"{path}/frames", attempt.guides, size=0.045)
+        self._draw_turns(f"{path}/turned", attempt)
         samples = attempt.samples(SAMPLES)
         q = attempt.plan.q[samples]
         X_WL = self.linkage.poses(q)
@@ -106,6 +108,22 @@ class Inspector:
             ring = meshes.ring(RING, 0.012).moved(X_WJ)
             draw(self.meshcat, f"{path}/ghost/joint", ring, STATUS_COLORS[FAILED])
         return Drawn(attempt, path, samples, moving)
+
+    def _draw_turns(self, path: str, attempt: Attempt) -> None:
+        """Around every symmetric object an arc from where it stood to where it is turned to."""
+        looks = {item.name: item for item in self._objects}
+        for turn in attempt.turned:
+            item = looks.get(turn.body)
+            if item is None:
+                continue
+            rim, lift = item.radius + 0.006, np.eye(4)
+            lift[2, 3] = item.height
+            first, last = sorted((-turn.angle, 0.0))
+            color = STATUS_COLORS[DONE if attempt.plan.success else FAILED]
+            arc = screw_shapes.sector(rim, rim + 0.012, first - 0.01, last + 0.01, 0.004)
+            draw(self.meshcat, f"{path}/{turn.body}/arc", arc.moved(turn.X_FT @ lift), color, 0.7)
+            mark = screw_shapes.sector(rim - 0.012, rim + 0.03, -0.05, 0.05, 0.008)
+            draw(self.meshcat, f"{path}/{turn.body}/mark", mark.moved(turn.X_FT @ lift), color)
 
     def _draw_segment(self, path: str, attempt: Attempt, segment: int, status: str) -> None:
         """The path along one screw; of the failing one the part that was done is thicker."""

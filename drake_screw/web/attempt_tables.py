@@ -48,6 +48,7 @@ def attempt_record(attempt: Attempt) -> dict[str, Any]:
         "fraction": None if attempt.plan.success else float(outcome.fraction),
         "joint": None if at is None else arm.joint_names[at],
         "touching": [list(pair) for pair in attempt.bodies],
+        "turned": {turn.body: turn.angle for turn in attempt.turned},
         "least_margin": {"joint": arm.joint_names[joint], "margin": margin},
         "segments": [
             {

@@ -9,11 +9,12 @@ import pytest
 from pydrake.geometry import Box, Capsule, Cylinder, Ellipsoid, Sphere
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning import BatchPlanner, Cause, Plan, ReferencePlanner
+from drake_screw.planning import BatchPlanner, Cause, Plan, ReferencePlanner, Symmetries
 from drake_screw.planning.clearance import bubbles_of, covering, half_extents
 from drake_screw.planning.collisions import SPACING, CollisionFreePlanner, PlanChecker
 from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig, build_workcell
 from drake_screw.screws import exp, pose, rotation_angle, sclerp, translation_distance
+from drake_screw.tasks import Symmetry
 
 START = (1.0434904, -0.2201262, -0.7470486, 1.5243934, 1.8818109, -0.9687089, -0.4908739)
 JOINTS = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
@@ -276,3 +277,30 @@ def test_a_moving_screw_of_the_bowl_moves_the_answer(checker, batch) -> None:
     hit = checker.explain(plans_of(batch, THROUGH, turned)[0], turned[0])
     assert hit is not None
     assert hit.segment == 1
+
+
+def test_a_turn_that_touches_nothing_is_found_after_those_that_do(workcell) -> None:
+    """By asking Drake about every turn's plan: the first that is free wins, if there is any."""
+    chain = workcell.arm.screw_chain()
+    symmetries = Symmetries.of(chain, [Symmetry()], tried=8)
+    turning = BatchPlanner(chain, symmetries=symmetries)
+    planner = CollisionFreePlanner(turning, workcell)
+    beside = reaching("beside", (-0.25, 0.0, 0.25), (-0.16, 0.0, 0.10))
+    lessons, X_WO = [beside, ABOVE, THROUGH], some_places(12, seed=5)
+    found = planner.all_outcomes(lessons, X_WO, START)
+    seen = set()
+    for i, (d, lesson) in itertools.product(range(12), enumerate(lessons)):
+        turns = turning.turn_outcomes(lesson, X_WO[i : i + 1], START)[0]
+        free, touches = [], 0
+        for turn in np.flatnonzero(turns.success):
+            plan = turning.plan(lesson, X_WO[i], START, int(turn))
+            hit = planner.checker.explain(plan, X_WO[i])
+            free += [int(turn)] if hit is None else []
+            touches += hit is not None
+        assert bool(found.success[i, d]) is bool(free)
+        if free:
+            assert found.turn[i, d] == free[0]
+        seen.add((bool(free), touches > 0))
+    assert {(True, True), (True, False), (False, True)} <= seen
+    some = planner.any_success(lessons, X_WO, START)
+    np.testing.assert_array_equal(some.any_success, found.any_success)
