@@ -19,6 +19,7 @@ from drake_screw.assembly.symmetries import symmetries
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
 from drake_screw.planning import BatchPlanner, Outcomes, Planner, Symmetries
+from drake_screw.planning.approach import seeds
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.plugins import find
 from drake_screw.robot import (
@@ -142,10 +143,12 @@ class Setup:
     @cached_property
     def batch_planner(self) -> BatchPlanner:
         """The planner that watches joint limits and reach."""
+        chain, block = self.workcell.arm.screw_chain(), self.scenario.planner
         return BatchPlanner(
-            self.workcell.arm.screw_chain(),
-            tolerance=self.scenario.planner.tolerance,
+            chain,
+            tolerance=block.tolerance,
             symmetries=self.symmetries,
+            seeds=seeds(chain, block.ik_seeds) if block.approach == "free" else None,
         )
 
     @cached_property

@@ -5,13 +5,13 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning.columns import Columns, every_turn
+from drake_screw.planning.approach import approached
+from drake_screw.planning.columns import Columns, furthest
 from drake_screw.planning.compiled import Answers, Kernel, Order, Settings
 from drake_screw.planning.outcomes import Outcomes, Plan, concatenate
 from drake_screw.planning.paths import joint_paths
@@ -37,6 +37,9 @@ class BatchPlanner:
         tolerance: rad (or m), error allowed in one step of the joint path.
         threads: to use; all processors if None.
         symmetries: of the objects and the tool; of none if None.
+        seeds: (S, n) configurations from which inverse kinematics of the first guiding pose sets
+            out where the screw from the start fails: the approach is free then. None where every
+            motion is along a screw.
 
     Attributes:
         evaluations: of dq/ds = J^+ V so far, for benchmarks.
@@ -49,8 +52,11 @@ class BatchPlanner:
         tolerance: float | None = None,
         threads: int | None = None,
         symmetries: Symmetries | None = None,
+        seeds: Array | None = None,
     ) -> None:
         self.chain = chain
+        self.seeds = np.zeros((0, chain.n)) if seeds is None else seeds
+        self.others = range(1, 1 + len(self.seeds))
         self.symmetries = symmetries or Symmetries()
         self.threads = threads or os.cpu_count() or 1
         self.evaluations = 0
@@ -67,7 +73,8 @@ class BatchPlanner:
     ) -> Outcomes:
         """Plan every instance with every demonstration.
 
-        Where bodies are symmetric, a demonstration's turns are tried until one succeeds.
+        Where there are variants of a demonstration (turns of symmetric bodies, configurations to
+        come from), they are tried until one succeeds.
 
         Args:
             demonstrations: D of them.
@@ -83,13 +90,14 @@ class BatchPlanner:
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         check_question(self.chain, demonstrations, X_WO, q_start)
-        counts = np.array([self.symmetries.count(d) for d in demonstrations], dtype=np.int64)
-        if len(np.unique(counts)) <= 1:
-            run = int(counts.max(initial=1))
-            return self._plan(demonstrations, X_WO, q_start, None, run)
-        one_by_one = zip(demonstrations, counts.tolist(), strict=True)
-        parts = [self._plan([d], X_WO, q_start, None, run) for d, run in one_by_one]
-        return concatenate(parts, axis=1)
+        outcomes = self._each_alone(demonstrations, X_WO, q_start, range(1))
+        if not self.others:
+            return outcomes
+        for d, demonstration in enumerate(demonstrations):
+            left = np.flatnonzero(~outcomes.success[:, d])
+            again = self._each_alone([demonstration], X_WO[left], q_start, self.others)[:, 0]
+            outcomes = outcomes.replaced((left, d), furthest(outcomes[left, d], again))
+        return outcomes
 
     def any_success(
         self, demonstrations: Sequence[Demonstration], X_WO: ArrayLike, q_start: ArrayLike
@@ -97,9 +105,9 @@ class BatchPlanner:
         """Plan every instance until one demonstration succeeds, the nearest demonstrations first.
 
         Takes and returns what `all_outcomes` does; demonstrations left over are NOT_TRIED. The
-        order only saves time: whether an instance succeeds does not depend on it. Where bodies are
-        symmetric, every demonstration is tried as it is turned first, then with its second turn,
-        and so on; one that is left over before its last is NOT_TRIED, too.
+        order only saves time: whether an instance succeeds does not depend on it. Where there are
+        variants, the first one of every demonstration is tried, then the second one of every, and
+        so on; a demonstration that is left over before its last variant is NOT_TRIED, too.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         check_question(self.chain, demonstrations, X_WO, q_start)
@@ -109,24 +117,32 @@ class BatchPlanner:
             away = [translation_distance(X_WO, X).sum(axis=-1) for X in there]
             return np.argsort(np.stack(away, axis=-1), axis=-1, kind="stable")
 
-        return self._plan(demonstrations, X_WO, q_start, nearest_first, None)
+        outcomes = self._plan(demonstrations, X_WO, q_start, nearest_first, None, range(1))
+        left = np.flatnonzero(~outcomes.any_success)
+        if not self.others or len(left) == 0:
+            return outcomes
+        again = self._plan(demonstrations, X_WO[left], q_start, nearest_first, None, self.others)
+        return outcomes.replaced(left, furthest(outcomes[left], again))
 
-    def turn_outcomes(
+    def variant_outcomes(
         self, demonstration: Demonstration, X_WO: ArrayLike, q_start: ArrayLike
     ) -> Outcomes:
-        """Plan every instance with every turn of a demonstration, whether or not one succeeds.
+        """Plan every instance with every variant of a demonstration, whether or not one succeeds.
 
-        Takes what `all_outcomes` does, and returns outcomes (N, T), by the order of the turns.
+        Takes what `all_outcomes` does, and returns outcomes (N, V), by the number of the variant.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         check_question(self.chain, [demonstration], X_WO, q_start)
-        turns = self.symmetries.count(demonstration)
-        failed = failed_start(self.chain, q_start, (len(X_WO), turns))
+        failed = failed_start(self.chain, q_start, (len(X_WO), self.variants(demonstration)))
         if failed is not None:
             return failed
-        columns = Columns.of([demonstration], self.symmetries, X_WO.shape[1])
+        columns = self._columns([demonstration], X_WO, range(1 + len(self.others)))
         answers = self._answers(columns, X_WO, q_start, None, 1)
-        return concatenate([every_turn(found) for found in answers])
+        return concatenate([columns.each(found) for found in answers])
+
+    def variants(self, demonstration: Demonstration) -> int:
+        """How many variants of a demonstration there are."""
+        return self.symmetries.count(demonstration) * (1 + len(self.others))
 
     def plans(
         self,
@@ -134,14 +150,14 @@ class BatchPlanner:
         X_WO: ArrayLike,
         q_start: ArrayLike,
         which: ArrayLike,
-        turn: ArrayLike = 0,
+        variant: ArrayLike = 0,
     ) -> tuple[Plan, ...]:
         """The plans behind outcomes: the joint paths that were followed to find them.
 
         Args:
             demonstrations, X_WO, q_start: as for `all_outcomes`.
             which: (N,) indices of the demonstration that each instance is planned with.
-            turn: (N,) or one for all, which turn of it, as outcomes have it.
+            variant: (N,) or one for all, which variant of it, as outcomes have it.
 
         Returns:
             N plans, each up to where it failed if it did. Their outcomes are those of
@@ -149,7 +165,7 @@ class BatchPlanner:
 
         Raises:
             ValueError: as for `all_outcomes`; or an index is not that of a demonstration, or of a
-                turn of it.
+                variant of it.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         which = np.asarray(which, dtype=np.int64)
@@ -159,11 +175,11 @@ class BatchPlanner:
             raise ValueError(f"which must be {N} indices from 0 to {D - 1}, it is {which}")
         if N == 0:
             return ()
-        columns = Columns.of(demonstrations, self.symmetries, X_WO.shape[1])
-        turn = np.broadcast_to(np.asarray(turn, dtype=np.int64), (N,))
-        if ((turn < 0) | (turn >= columns.counts[which])).any():
-            raise ValueError(f"turn must count from 0 up to the turns there are, it is {turn}")
-        guides, angles = self._followed(demonstrations, X_WO, which, turn)
+        columns = self._columns(demonstrations, X_WO, range(1 + len(self.others)))
+        variant = np.broadcast_to(np.asarray(variant, dtype=np.int64), (N,))
+        if ((variant < 0) | (variant >= columns.counts[which])).any():
+            raise ValueError(f"variant must be one of those that there are, it is {variant}")
+        guides, angles = columns.followed(X_WO, which, variant)
         failed = failed_start(self.chain, q_start, (N,))
         if failed is not None:
             stay = np.zeros(1, dtype=np.int64), np.zeros(1)
@@ -171,34 +187,60 @@ class BatchPlanner:
                 Plan(q_start[None], *stay, failed[i], guides[i], angles[i]) for i in range(N)
             )
         self._warn_of_compiling(N)
+        column = columns.first[which] + variant
         traced = self._kernel.trace(
             columns.X_OE,
             columns.objects,
             X_WO,
-            q_start,
-            columns.first[which] + turn,
+            self._starts(q_start),
+            column,
+            begins=columns.begins,
             place=columns.poses,
             threads=self.threads,
         )
         limits = np.stack([self.chain.lower, self.chain.upper])
+        starts = self._starts(q_start)[columns.begins[column]]
         plans: list[Plan] = []
-        first = 0
         for answers in traced:
-            found = _outcomes(answers, turn[first : first + len(answers.cause)])
-            own = slice(first, first + len(found.cause))
-            plans += joint_paths(found, answers.trace, q_start, limits, guides[own], angles[own])
-            first = own.stop
-        return tuple(plans)
+            own = slice(len(plans), len(plans) + len(answers.cause))
+            found = columns.of_columns(answers, column[own])
+            plans += joint_paths(
+                found, answers.trace, starts[own], limits, guides[own], angles[own]
+            )
+        return tuple(
+            approached(plan, q_start) if columns.begins[c] else plan
+            for plan, c in zip(plans, column, strict=True)
+        )
 
     def plan(
         self,
         demonstration: Demonstration,
         X_WO: ArrayLike,
         q_start: ArrayLike,
-        turn: int = 0,
+        variant: int = 0,
     ) -> Plan:
-        """The plan of one instance X_WO (k, 4, 4) with a turn of a demonstration; see `plans`."""
-        return self.plans([demonstration], np.asarray(X_WO)[None], q_start, [0], turn)[0]
+        """The plan of one instance X_WO (k, 4, 4) with a demonstration's variant; see `plans`."""
+        return self.plans([demonstration], np.asarray(X_WO)[None], q_start, [0], variant)[0]
+
+    def _starts(self, q_start: Array) -> Array:
+        """(1 + S, n) the arm's start, and the configurations that a free approach sets out from."""
+        return np.concatenate([q_start[None], self.seeds])
+
+    def _columns(
+        self, demonstrations: Sequence[Demonstration], X_WO: Array, starts: range
+    ) -> Columns:
+        return Columns.of(demonstrations, self.symmetries, X_WO.shape[1], starts)
+
+    def _each_alone(
+        self, demonstrations: Sequence[Demonstration], X_WO: Array, q_start: Array, starts: range
+    ) -> Outcomes:
+        """Outcomes (N, D), the variants of each demonstration ended by a success of that one."""
+        counts = [self.symmetries.count(d) * len(starts) for d in demonstrations]
+        if len(set(counts)) <= 1:
+            run = max(counts, default=1)
+            return self._plan(demonstrations, X_WO, q_start, None, run, starts)
+        parts = [self._plan([d], X_WO, q_start, None, None, starts) for d in demonstrations]
+        return concatenate(parts, axis=1)
 
     def _plan(
         self,
@@ -207,16 +249,18 @@ class BatchPlanner:
         q_start: Array,
         order: Order | None,
         run: int | None,
+        starts: range,
     ) -> Outcomes:
-        """Outcomes (N, D), each run of so many turns ended by a success; all are one run if None.
+        """Outcomes (N, D), each run of so many variants ended by a success; one run if None.
 
         Args:
             order: of the demonstrations.
+            starts: configurations to try.
         """
         failed = failed_start(self.chain, q_start, (len(X_WO), len(demonstrations)))
         if failed is not None:
             return failed
-        columns = Columns.of(demonstrations, self.symmetries, X_WO.shape[1])
+        columns = self._columns(demonstrations, X_WO, starts)
         answers = self._answers(columns, X_WO, q_start, order, run or len(columns.X_OE))
         return concatenate([columns.outcomes(found) for found in answers])
 
@@ -234,39 +278,16 @@ class BatchPlanner:
             columns.X_OE,
             columns.objects,
             X_WO,
-            q_start,
+            self._starts(q_start),
             order and in_order,
             run=run,
+            begins=columns.begins,
             place=columns.poses,
             threads=self.threads,
         )
         self.evaluations += EVALUATIONS_PER_STEP * sum(int(a.steps.sum()) for a in answers)
         return answers
 
-    def _followed(
-        self,
-        demonstrations: Sequence[Demonstration],
-        X_WO: Array,
-        which: NDArray[np.int64],
-        turn: NDArray[np.int64],
-    ) -> tuple[list[Array], Array]:
-        """Guiding poses X_WE (g, 4, 4) that each plan follows, and how its bodies are turned."""
-        angles = np.zeros((len(X_WO), X_WO.shape[1] + 1))
-        guides: list[Array] = [np.empty((0, 4, 4))] * len(X_WO)
-        for d in np.unique(which):
-            rows, demonstration = np.flatnonzero(which == d), demonstrations[d]
-            angles[rows] = self.symmetries.angles(demonstration, X_WO[rows], turn[rows])
-            X_WE = self.symmetries.guides(demonstration, X_WO[rows], angles[rows])
-            for row, X in zip(rows.tolist(), X_WE, strict=True):
-                guides[row] = X
-        return guides, angles
-
     def _warn_of_compiling(self, plans: int) -> None:
         if not self.compiled and plans > 0:
             _LOG.info("compiling the planner for this arm, once; this takes a few seconds")
-
-
-def _outcomes(answers: Answers, turn: NDArray[np.int64]) -> Outcomes:
-    """Outcomes (N,) of answers (N, 1)."""
-    found = every_turn(answers)[:, 0]
-    return replace(found, turn=turn.astype(np.int16))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning.batch import BatchPlanner
 from drake_screw.planning.clearance import bubbles_of
-from drake_screw.planning.columns import best_turn
+from drake_screw.planning.columns import best_variant
 from drake_screw.planning.outcomes import Cause, Outcomes, Plan, concatenate
 from drake_screw.robot import Workcell
 from drake_screw.typing import Array
@@ -172,9 +172,9 @@ class CollisionFreePlanner:
         outcomes = self._checked(outcomes, demonstrations, X_WO, q_start)
         for d, demonstration in enumerate(demonstrations):
             again = np.flatnonzero(outcomes.cause[:, d] == Cause.COLLISION)
-            if len(again) and self.planner.symmetries.count(demonstration) > 1:
-                turned = self._of_turns(demonstration, X_WO[again], q_start, outcomes[again, d])
-                outcomes = outcomes.replaced((again, d), turned)
+            if len(again) and self.planner.variants(demonstration) > 1:
+                others = self._of_variants(demonstration, X_WO[again], q_start, outcomes[again, d])
+                outcomes = outcomes.replaced((again, d), others)
         return outcomes
 
     def any_success(
@@ -189,26 +189,26 @@ class CollisionFreePlanner:
             return outcomes
         return outcomes.replaced(again, self.all_outcomes(demonstrations, X_WO[again], q_start))
 
-    def _of_turns(
+    def _of_variants(
         self, demonstration: Demonstration, X_WO: Array, q_start: ArrayLike, known: Outcomes
     ) -> Outcomes:
-        """(N,) outcomes of instances where a turn keeps the limits and touches something.
+        """(N,) outcomes of instances where a variant keeps the limits and touches something.
 
         Args:
-            known: (N,) outcomes COLLISION of that turn, the first that keeps the limits.
+            known: (N,) outcomes COLLISION of that variant, the first that keeps the limits.
         """
-        outcomes = self.planner.turn_outcomes(demonstration, X_WO, q_start)
-        outcomes = outcomes.replaced((np.arange(len(X_WO)), known.turn), known)
-        for turn in range(int(known.turn.min()) + 1, outcomes.shape[1]):
-            solved = outcomes.success[:, :turn].any(axis=1)
-            left = np.flatnonzero(outcomes.success[:, turn] & ~solved)
+        outcomes = self.planner.variant_outcomes(demonstration, X_WO, q_start)
+        outcomes = outcomes.replaced((np.arange(len(X_WO)), known.variant), known)
+        for variant in range(int(known.variant.min()) + 1, outcomes.shape[1]):
+            solved = outcomes.success[:, :variant].any(axis=1)
+            left = np.flatnonzero(outcomes.success[:, variant] & ~solved)
             if len(left) == 0:
                 continue
-            turns = np.full(len(left), turn, dtype=np.int16)
+            variants = np.full(len(left), variant, dtype=np.int16)
             which = np.zeros(len(left), dtype=np.int64)
-            found = self._of_plans([demonstration], X_WO[left], q_start, which, turns)
-            outcomes = outcomes.replaced((left, turn), found)
-        return best_turn(outcomes)
+            found = self._of_plans([demonstration], X_WO[left], q_start, which, variants)
+            outcomes = outcomes.replaced((left, variant), found)
+        return best_variant(outcomes)
 
     def _checked(
         self,
@@ -219,9 +219,11 @@ class CollisionFreePlanner:
     ) -> Outcomes:
         """Outcomes (N, D) with COLLISION in place of those successes that touch something."""
         instance, which = np.nonzero(outcomes.success)
-        turn = outcomes.turn[instance, which]
+        variant = outcomes.variant[instance, which]
         parts = [
-            self._of_plans(demonstrations, X_WO[instance[some]], q_start, which[some], turn[some])
+            self._of_plans(
+                demonstrations, X_WO[instance[some]], q_start, which[some], variant[some]
+            )
             for some in np.split(np.arange(len(instance)), range(PLANS, len(instance), PLANS))
         ]
         return outcomes.replaced((instance, which), concatenate(parts))
@@ -232,15 +234,15 @@ class CollisionFreePlanner:
         X_WO: Array,
         q_start: ArrayLike,
         which: NDArray[np.int64],
-        turn: NDArray[np.int16],
+        variant: NDArray[np.int16],
     ) -> Outcomes:
         """(N,) outcomes of plans that keep the limits, N instances with one demonstration each."""
-        plans = self.planner.plans(demonstrations, X_WO, q_start, which, turn)
+        plans = self.planner.plans(demonstrations, X_WO, q_start, which, variant)
         found = self.checker.first_collisions(plans, X_WO)
         return Outcomes(
             np.where(found.collides, Cause.COLLISION, Cause.SUCCESS).astype(np.uint8),
             found.segment.astype(np.int16),
             np.full(len(plans), -1, dtype=np.int8),
             found.fraction.astype(np.float32),
-            turn,
+            variant,
         )

@@ -32,15 +32,17 @@ class Outcomes:
         segment: the screw segment that failed, from 0; -1 for a success.
         joint: the joint at its limit, from 0; -1 otherwise.
         fraction: how much of the failing segment was done, 0 to 1; 1 for a success.
-        turn: which turn of symmetric bodies it is of, in the order in which they are tried, from 0
-            (see `Symmetries`); of a failure the one that came furthest; 0 where there are none.
+        variant: which variant of the demonstration it is of, in the order in which they are tried,
+            from 0: turns of symmetric bodies (see `Symmetries`), and where the approach is free
+            all of them again from other configurations (see `BatchPlanner`). Of a failure it is the
+            one that came furthest.
     """
 
     cause: NDArray[np.uint8]
     segment: NDArray[np.int16]
     joint: NDArray[np.int8]
     fraction: NDArray[np.float32]
-    turn: NDArray[np.int16]
+    variant: NDArray[np.int16]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -94,7 +96,7 @@ class Outcomes:
             change(self.segment),
             change(self.joint),
             change(self.fraction),
-            change(self.turn),
+            change(self.variant),
         )
 
     @property
@@ -114,7 +116,7 @@ class Outcomes:
         changed.segment[where] = values.segment
         changed.joint[where] = values.joint
         changed.fraction[where] = values.fraction
-        changed.turn[where] = values.turn
+        changed.variant[where] = values.variant
         return changed
 
     def __getitem__(self, index: Any) -> Outcomes:
@@ -144,12 +146,12 @@ def concatenate(parts: Iterable[Outcomes], axis: int = 0) -> Outcomes:
         np.concatenate([p.segment for p in parts], axis=axis),
         np.concatenate([p.joint for p in parts], axis=axis),
         np.concatenate([p.fraction for p in parts], axis=axis),
-        np.concatenate([p.turn for p in parts], axis=axis),
+        np.concatenate([p.variant for p in parts], axis=axis),
     )
 
 
 def one_outcome(
-    cause: Cause, segment: int = -1, joint: int = -1, fraction: float = 1.0, turn: int = 0
+    cause: Cause, segment: int = -1, joint: int = -1, fraction: float = 1.0, variant: int = 0
 ) -> Outcomes:
     """A single outcome, arrays of shape ()."""
     return Outcomes(
@@ -157,7 +159,7 @@ def one_outcome(
         np.array(segment, dtype=np.int16),
         np.array(joint, dtype=np.int8),
         np.array(fraction, dtype=np.float32),
-        np.array(turn, dtype=np.int16),
+        np.array(variant, dtype=np.int16),
     )
 
 
@@ -173,6 +175,8 @@ class Plan:
         guides: (g, 4, 4) X_WE where its segments end: the guiding poses, transferred and turned.
         angles: (k + 1,) rad, by which each of k symmetric objects, and last the tool, is turned
             about its axis; () where nothing is known of turns.
+        approach: whether the first segment is any joint motion to the first guiding pose instead of
+            a screw.
     """
 
     q: Array
@@ -181,6 +185,7 @@ class Plan:
     outcome: Outcomes
     guides: Array
     angles: Array = field(default_factory=lambda: np.zeros(0))
+    approach: bool = False
 
     @property
     def success(self) -> bool:

@@ -37,7 +37,7 @@ def joint_paths(
     Args:
         outcomes: (N,) of the plans.
         trace: of their steps.
-        q_start: (n,) rad or m, where all start.
+        q_start: (N, n) rad or m, where each starts.
         limits: (2, n) lower and upper joint limits.
         guides, angles: of each plan, as it has them.
     """
@@ -51,7 +51,7 @@ def joint_paths(
     plans = []
     for i, outcome in enumerate(outcomes[j] for j in range(len(trace.steps))):
         own = slice(first[i], first[i + 1])
-        path = np.concatenate([q_start[None], q[own]])
+        path = np.concatenate([q_start[i : i + 1], q[own]])
         if outcome.cause == Cause.JOINT_LIMIT:
             joint = int(outcome.joint)
             nearer = np.abs(limits[:, joint] - path[-1, joint]).argmin()

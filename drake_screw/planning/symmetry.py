@@ -122,13 +122,14 @@ class Symmetries:
         Args:
             demonstration: that is carried over.
             X_WO: (..., k, 4, 4).
-            turn: (...) its number in the order in which turns are tried, from 0.
+            turn: (...) its number in the order in which turns are tried, from 0, and over again.
 
         Returns:
             (..., k + 1) rad, of each object, and last of the tool; 0 for what is not symmetric.
         """
         first = self.first(demonstration, X_WO)
-        return first + self.away(demonstration, first.shape[-1] - 1)[np.asarray(turn)]
+        away = self.away(demonstration, first.shape[-1] - 1)
+        return first + away[np.asarray(turn) % len(away)]
 
     def guides(self, demonstration: Demonstration, X_WO: ArrayLike, angles: ArrayLike) -> Array:
         """Guiding poses of a demonstration whose bodies are turned.

@@ -86,7 +86,7 @@ def save_evaluation(file: Path, evaluation: Evaluation) -> None:
         "segment": outcomes.segment,
         "joint": outcomes.joint,
         "fraction": outcomes.fraction,
-        "turn": outcomes.turn,
+        "variant": outcomes.variant,
         **_frontier_arrays(evaluation.frontier),
     }
     np.savez_compressed(file, **arrays)
@@ -100,9 +100,13 @@ def load_evaluation(file: Path) -> Evaluation:
             cut off, or not such a file.
     """
     with np.load(file) as data:
-        none = np.zeros(data["cause"].shape, dtype=np.int16)  # as in runs from before turns
-        turn = data.get("turn", none)
-        outcomes = Outcomes(data["cause"], data["segment"], data["joint"], data["fraction"], turn)
+        outcomes = Outcomes(
+            data["cause"],
+            data["segment"],
+            data["joint"],
+            data["fraction"],
+            data.get("variant", np.zeros(data["cause"].shape, dtype=np.int16)),  # one in old runs
+        )
         region = data["region"].astype(np.int64)
         return Evaluation(data["x_y_yaw"], region, outcomes, _frontier(data))
 

@@ -87,7 +87,11 @@ def execute(
     by = outcomes.best_attempt
     solved = np.flatnonzero(outcomes.any_success)
     plans = setup.batch_planner.plans(
-        demonstrations, X_WO[solved], setup.workcell.start, by[solved], outcomes.best.turn[solved]
+        demonstrations,
+        X_WO[solved],
+        setup.workcell.start,
+        by[solved],
+        outcomes.best.variant[solved],
     )
     jobs = [Job(plan, X_WO[i]) for i, plan in zip(solved, plans, strict=True)]
     config = StationConfig(setup.robot, setup.table, setup.objects)
@@ -229,7 +233,7 @@ def why_not(
             joint = setup.workcell.arm.joint_names[int(outcomes.joint[best])]
             return f"with {name}, {joint} meets its limit in segment {segment}"
         case Cause.COLLISION:
-            plan = planner.planner.plan(chosen, X_WO, start, int(outcomes.turn[best]))
+            plan = planner.planner.plan(chosen, X_WO, start, int(outcomes.variant[best]))
             hit = planner.checker.explain(plan, X_WO)
             return f"with {name}, {hit}"
         case _:

@@ -95,7 +95,7 @@ def _turns(
         bodies = setup.symmetries.bodies(demonstration)
         if not bodies:
             continue
-        angles = setup.symmetries.angles(demonstration, X_WO, outcomes.turn[:, d])
+        angles = setup.symmetries.angles(demonstration, X_WO, outcomes.variant[:, d])
         for body in bodies:
             turned = np.remainder(angles[:, body] + np.pi, 2.0 * np.pi) - np.pi
             columns[f"{demonstration.name}:{names[body]}"] = turned

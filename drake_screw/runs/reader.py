@@ -232,8 +232,11 @@ class RunReader:
         X_WO = self.setup.area.X_WO(event.evaluation.x_y_yaw[instance])
         workcell, demonstration = self.setup.workcell, event.demonstrations[number]
         found = event.evaluation.outcomes[instance][number]
-        turn = int(found.turn)
-        plan = self.setup.batch_planner.plan(demonstration, X_WO, workcell.start, turn)
+        if found.cause == Cause.NOT_TRIED:
+            planner = self.setup.planner
+            found = planner.all_outcomes([demonstration], X_WO[None], workcell.start)[0, 0]
+        variant = int(found.variant)
+        plan = self.setup.batch_planner.plan(demonstration, X_WO, workcell.start, variant)
         names = [o.name for o in self.setup.area.objects]
         turned = self.setup.symmetries.named(demonstration, X_WO, plan.angles, names)
         tried = replace(attempt(workcell.arm, number, demonstration, X_WO, plan), turned=turned)

@@ -90,8 +90,8 @@ def write_trajectory(
             remedy="Choose another instance, or carry the run on with more demonstrations.",
         )
     chosen = demonstrations[int(outcomes.best_attempt)]
-    turn = int(outcomes.best.turn)
-    plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start, turn)
+    variant = int(outcomes.best.variant)
+    plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start, variant)
     timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), plan.guides]), arm)
     named = [o.name for o in setup.area.objects]
     turned = setup.symmetries.named(chosen, X_WO, plan.angles, named)

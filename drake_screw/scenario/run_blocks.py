@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
 from pydantic.config import JsonDict
@@ -159,5 +159,11 @@ class PlannerBlock(Block):
     """error per step of the joint path"""
     turns: Annotated[int, Field(ge=1, le=360)] = 24
     """turns that are tried of an object or tool that may be turned by any angle"""
+    approach: Literal["screw", "free"] = "screw"
+    """how the arm comes to the first guiding pose: along a screw, as published, or by any joint
+    motion"""
+    ik_seeds: Annotated[int, Field(ge=1, le=1024)] = 32
+    """configurations from which inverse kinematics of the first guiding pose sets out where the
+    approach is free"""
     collision: bool = False
     """whether a plan that touches the robot itself, the table or an object fails"""

@@ -290,7 +290,7 @@ def test_a_turn_that_touches_nothing_is_found_after_those_that_do(workcell) -> N
     found = planner.all_outcomes(lessons, X_WO, START)
     seen = set()
     for i, (d, lesson) in itertools.product(range(12), enumerate(lessons)):
-        turns = turning.turn_outcomes(lesson, X_WO[i : i + 1], START)[0]
+        turns = turning.variant_outcomes(lesson, X_WO[i : i + 1], START)[0]
         free, touches = [], 0
         for turn in np.flatnonzero(turns.success):
             plan = turning.plan(lesson, X_WO[i], START, int(turn))
@@ -299,7 +299,7 @@ def test_a_turn_that_touches_nothing_is_found_after_those_that_do(workcell) -> N
             touches += hit is not None
         assert bool(found.success[i, d]) is bool(free)
         if free:
-            assert found.turn[i, d] == free[0]
+            assert found.variant[i, d] == free[0]
         seen.add((bool(free), touches > 0))
     assert {(True, True), (True, False), (False, True)} <= seen
     some = planner.any_success(lessons, X_WO, START)

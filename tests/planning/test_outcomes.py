@@ -104,7 +104,7 @@ def test_indexing_and_concatenation() -> None:
     np.testing.assert_array_equal(table[:, 0].codes(), table.codes()[:, 0])
     assert table[0, 1].codes() == "3:6"
     whole = concatenate(table[i : i + 1] for i in range(3))
-    for name in ("cause", "segment", "joint", "fraction", "turn"):
+    for name in ("cause", "segment", "joint", "fraction", "variant"):
         np.testing.assert_array_equal(getattr(whole, name), getattr(table, name))
         assert getattr(whole, name).dtype == getattr(table, name).dtype
 

@@ -79,7 +79,7 @@ def test_each_turn_is_the_demonstration_turned_by_hand(
 ) -> None:
     planner, plain = planner_with(seven, *objects, tool=tool), BatchPlanner(seven.screw_chain())
     for lesson, count in zip(lessons, turns, strict=True):
-        found = planner.turn_outcomes(lesson, places, REACHING)
+        found = planner.variant_outcomes(lesson, places, REACHING)
         assert found.shape == (N, count)
         for i in range(0, N, 7):
             for turn in range(count):
@@ -99,7 +99,7 @@ def turning(seven: Arm) -> BatchPlanner:
 @pytest.fixture(scope="module")
 def each(turning: BatchPlanner, lessons, places) -> list[Outcomes]:
     """Outcomes (N, T) of each demonstration's turns."""
-    return [turning.turn_outcomes(lesson, places, REACHING) for lesson in lessons]
+    return [turning.variant_outcomes(lesson, places, REACHING) for lesson in lessons]
 
 
 def test_an_outcome_is_that_of_the_first_turn_that_succeeds(
@@ -109,9 +109,11 @@ def test_an_outcome_is_that_of_the_first_turn_that_succeeds(
     for d, turns in enumerate(each):
         np.testing.assert_array_equal(found.success[:, d], turns.any_success)
         solved = np.flatnonzero(turns.any_success)
-        np.testing.assert_array_equal(found.turn[solved, d], turns.success[solved].argmax(axis=1))
+        np.testing.assert_array_equal(
+            found.variant[solved, d], turns.success[solved].argmax(axis=1)
+        )
         assert 5 < len(solved) < N - 5
-    assert len(np.unique(found.turn[found.success])) > 2
+    assert len(np.unique(found.variant[found.success])) > 2
 
 
 def test_a_failure_tells_the_best_attempt_over_all_turns(
@@ -121,8 +123,8 @@ def test_a_failure_tells_the_best_attempt_over_all_turns(
     for d, turns in enumerate(each):
         for i in np.flatnonzero(~turns.any_success):
             came = turns.segment[i] + 0.5 * turns.fraction[i].astype(float)
-            assert found.turn[i, d] == came.argmax()
-            at = i, int(found.turn[i, d])
+            assert found.variant[i, d] == came.argmax()
+            at = i, int(found.variant[i, d])
             assert found.cause[i, d] == turns.cause[at]
             assert found.joint[i, d] == turns.joint[at]
             assert found.fraction[i, d] == turns.fraction[at]
@@ -137,7 +139,7 @@ def test_any_success_finds_what_all_turns_of_all_demonstrations_find(
     tried = some.cause != Cause.NOT_TRIED
     assert tried[~whole.any_success].all()
     assert (some.success.sum(axis=1) <= 1).all()
-    for name in ("cause", "segment", "joint", "fraction", "turn"):
+    for name in ("cause", "segment", "joint", "fraction", "variant"):
         np.testing.assert_array_equal(getattr(some, name)[tried], getattr(whole, name)[tried])
 
 
@@ -146,15 +148,15 @@ def test_plans_have_the_outcomes_and_guiding_poses_of_their_turns(
 ) -> None:
     found = turning.all_outcomes(lessons, places, REACHING)
     which = np.arange(N) % 3
-    turn = found.turn[np.arange(N), which]
+    turn = found.variant[np.arange(N), which]
     for i, plan in enumerate(turning.plans(lessons, places, REACHING, which, turn)):
         assert plan.outcome.cause == found.cause[i, which[i]]
-        assert plan.outcome.turn == turn[i]
+        assert plan.outcome.variant == turn[i]
         by_hand = turned_by_hand(lessons[which[i]], turning.symmetries, plan.angles)
         np.testing.assert_allclose(plan.guides, by_hand.transfer(places[i]), atol=1e-12)
         if plan.success:
             np.testing.assert_allclose(seven.pose(plan.q[-1]), plan.guides[-1], atol=2e-3)
-    with pytest.raises(ValueError, match="turn must count from 0"):
+    with pytest.raises(ValueError, match="variant must be one"):
         turning.plans(lessons, places, REACHING, which, turn + 99)
 
 
@@ -164,10 +166,10 @@ def test_a_body_of_revolution_may_stand_at_any_yaw(turning: BatchPlanner, lesson
     moved = places.copy()
     moved[:, 0] = moved[:, 0] @ rotation(ROUND.axis, 1.234)
     after = turning.all_outcomes(lessons[:1], moved, REACHING)
-    for name in ("cause", "segment", "joint", "turn"):
+    for name in ("cause", "segment", "joint", "variant"):
         np.testing.assert_array_equal(getattr(before, name), getattr(after, name))
     X_WE = [
-        s.guides(lessons[0], X, s.angles(lessons[0], X, before.turn[:, 0]))
+        s.guides(lessons[0], X, s.angles(lessons[0], X, before.variant[:, 0]))
         for s, X in ((turning.symmetries, places), (turning.symmetries, moved))
     ]
     np.testing.assert_allclose(*X_WE, atol=1e-9)

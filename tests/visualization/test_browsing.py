@@ -19,7 +19,7 @@ def book(make_round, regions) -> Catalogue:
     segment[failed[::2]] = 0
     segment[failed[::3], 1] = 2
     o = event.evaluation.outcomes
-    outcomes = Outcomes(o.cause, segment, o.joint, o.fraction, o.turn)
+    outcomes = Outcomes(o.cause, segment, o.joint, o.fraction, o.variant)
     event = replace(event, evaluation=replace(event.evaluation, outcomes=outcomes))
     return catalogue(event, event.evaluation.region, 0)
 

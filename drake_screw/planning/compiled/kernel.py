@@ -63,7 +63,8 @@ class Kernel:
         frames = link_frames(screws, home)
         programs, self._count = arm_module.programs(frames, lower, upper, settings)
         self._module = arm_module.load(programs)
-        rows = Rows(len(screws))
+        self._n = len(screws)
+        rows = Rows(self._n)
         self._rows = Places(rows.q, rows.q_stage, rows.kept, self._count)
         self._X_BW = np.linalg.inv(frames.X_WB)
         self._bounds = Bounds(
@@ -87,6 +88,7 @@ class Kernel:
         order: Order | None = None,
         *,
         run: int = 1,
+        begins: NDArray[np.int64] | None = None,
         place: Place = _as_they_are,
         threads: int | None = None,
     ) -> list[Answers]:
@@ -96,10 +98,12 @@ class Kernel:
             X_OE: guiding poses (g, 4, 4) of each demonstration in the frame of their object, g > 0.
             objects: (g,) index of that object, for each demonstration.
             X_WO: (N, k, 4, 4) object poses.
-            q_start: (n,) start configuration, inside the limits.
+            q_start: (n,) start configuration, inside the limits; or several, (S, n).
             order: in which to try the demonstrations; as given if None.
             run: leave out the demonstrations after the first that succeeds, in each run of so many
                 in that order; D is a multiple of it.
+            begins: (D,) which start configuration each demonstration begins at; the only one if
+                None.
             place: takes X_WO (m, k, 4, 4) to the frames that `objects` are indices of.
             threads: to use; all processors if None.
 
@@ -107,10 +111,10 @@ class Kernel:
             Answers (m, D) for successive instances.
         """
         N, D = len(X_WO), len(X_OE)
-        nothing = new_trace(np.zeros(0, dtype=np.int64), len(q_start))
+        nothing = new_trace(np.zeros(0, dtype=np.int64), self._n)
         if N == 0 or D == 0:
             return [_unanswered(N, D, nothing)]
-        problem = self._problem(X_OE, objects, q_start)
+        problem = self._problem(X_OE, objects, q_start, begins)
         as_given = np.arange(D)[None]
 
         def work(part: slice) -> Answers:
@@ -132,6 +136,7 @@ class Kernel:
         q_start: Array,
         which: NDArray[np.int64],
         *,
+        begins: NDArray[np.int64] | None = None,
         place: Place = _as_they_are,
         threads: int | None = None,
     ) -> list[Answers]:
@@ -141,19 +146,19 @@ class Kernel:
         not depend on its neighbours, so that both take the same, which are also those of `plan`.
 
         Args:
-            X_OE, objects, X_WO, q_start, place, threads: as for `plan`.
+            X_OE, objects, X_WO, q_start, begins, place, threads: as for `plan`.
             which: (N,) the demonstration of each instance.
 
         Returns:
             Answers (m, 1) with the trace of their steps, for successive instances.
         """
-        problem = self._problem(X_OE, objects, q_start)
+        problem = self._problem(X_OE, objects, q_start, begins)
         tried = np.ascontiguousarray(which, dtype=np.int64)[:, None]
 
         def work(part: slice) -> Answers:
             places = np.zeros(part.stop - part.start, dtype=np.int64)
             for _ in range(2):
-                trace = new_trace(places, len(q_start))
+                trace = new_trace(places, self._n)
                 answers = _unanswered(len(places), len(X_OE), trace)
                 self._run(problem, place(X_WO[part]), tried[part], 1, answers)
                 places = trace.steps
@@ -164,7 +169,11 @@ class Kernel:
         return traced
 
     def _problem(
-        self, X_OE: Sequence[Array], objects: Sequence[NDArray[np.int64]], q_start: Array
+        self,
+        X_OE: Sequence[Array],
+        objects: Sequence[NDArray[np.int64]],
+        q_start: Array,
+        begins: NDArray[np.int64] | None,
     ) -> Problem:
         """The part of a problem that all instances have in common; X_BO and order are empty."""
         return Problem(
@@ -173,7 +182,8 @@ class Kernel:
             np.concatenate(objects).astype(np.int64, order="C"),
             np.cumsum([0, *map(len, X_OE)], dtype=np.int64),
             np.empty((0, 0), dtype=np.int64),
-            self._start(q_start),
+            np.stack([self._start(q) for q in np.atleast_2d(q_start)]),
+            np.zeros(len(X_OE), dtype=np.int64) if begins is None else begins,
             self._bounds,
         )
 

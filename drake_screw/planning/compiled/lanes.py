@@ -70,7 +70,8 @@ class Problem(NamedTuple):
         objects: (g,) the object each belongs to.
         first: (D + 1,) where each demonstration's begin; the last entry is g.
         order: (N or 1, D) demonstrations in the order in which to try them.
-        start: the start configuration, with what `arrive` says of it.
+        starts: (S, ...) start configurations, with what `arrive` says of each.
+        begins: (D,) which of them each demonstration begins at.
         bounds: to keep to.
     """
 
@@ -79,7 +80,8 @@ class Problem(NamedTuple):
     objects: Index
     first: Index
     order: Index
-    start: Array
+    starts: Array
+    begins: Index
     bounds: Bounds
 
 
@@ -191,21 +193,21 @@ def begin_plan(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     lanes[i, DEMONSTRATION] = demonstration
     lanes[i, GUIDE] = problem.first[demonstration]
     lanes[i, STEPS] = 0
-    load_start(b, i, rows, problem.start)
+    load_start(b, i, rows, problem.starts, uintp(problem.begins[demonstration]))
     b[at(ACCEPTED, i)] = 1.0
     aim_at_guide(b, i, lanes, problem)
 
 
 @njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def load_start(b, i, rows, start):  # type: ignore[no-untyped-def]
-    """Puts a lane at the end of a step that ended in the start configuration."""
+def load_start(b, i, rows, starts, k):  # type: ignore[no-untyped-def]
+    """Puts a lane at the end of a step that ended in start configuration k."""
     n = rows.q_stage - rows.q
     for j in range(n):
-        b[at(rows.q_stage + j, i)] = start[uintp(j)]
-    for k in range(12):
-        b[at(POSE + k, i)] = start[uintp(n + k)]
-    for k in range(rows.end - rows.kept):
-        b[at(rows.kept + k, i)] = start[uintp(n + 12 + k)]
+        b[at(rows.q_stage + j, i)] = starts[k, uintp(j)]
+    for m in range(12):
+        b[at(POSE + m, i)] = starts[k, uintp(n + m)]
+    for m in range(rows.end - rows.kept):
+        b[at(rows.kept + m, i)] = starts[k, uintp(n + 12 + m)]
 
 
 @njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
