@@ -24,6 +24,7 @@ from drake_screw.commands import (
     run,
     study,
 )
+from drake_screw.commands.instance_option import InstanceCommand
 from drake_screw.commands.log import set_up_logging
 from drake_screw.commands.options import VerboseOption
 from drake_screw.errors import DrakeScrewError
@@ -45,6 +46,8 @@ _VERBS: dict[str, tuple[Callable[..., None], str]] = {
     "study": (study.study, study.EXAMPLE),
 }
 
+_OF_AN_INSTANCE = ("execute", "export")
+
 _log = logging.getLogger(__name__)
 
 app = typer.Typer(
@@ -58,7 +61,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80},
 )
 for _name, (_verb, _example) in _VERBS.items():
-    app.command(_name, epilog=f"Example:  {_example}")(_verb)
+    _class = InstanceCommand if _name in _OF_AN_INSTANCE else None
+    app.command(_name, cls=_class, epilog=f"Example:  {_example}")(_verb)
 
 
 @app.callback(invoke_without_command=True)

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
+from drake_screw.commands.instance_option import instance_option, parse_instance
 from drake_screw.commands.options import (
-    InstanceOption,
     JsonOption,
     RunArgument,
     VerboseOption,
@@ -22,7 +22,9 @@ EXAMPLE = "drake-screw execute runs/pouring/TIME --per-region 1"
 def execute(
     run: RunArgument,
     per_region: Annotated[int, typer.Option(help="Instances to draw in every region.", min=1)] = 2,
-    instance: InstanceOption = None,
+    instance: Annotated[
+        list[str] | None, instance_option("Just one, with the objects there.")
+    ] = None,
     graphviz: Annotated[
         bool, typer.Option("--graphviz", help="Print the simulated diagram for dot, and stop.")
     ] = False,
@@ -41,11 +43,10 @@ def execute(
             remedy="Give one of them.",
         )
     output = Output(json)
+    place = parse_instance(instance) if instance else None
     from drake_screw.runs import executions
 
     if graphviz:
         print(executions.station_graphviz(run))
         return
-    output.present(
-        executions.execute(run, per_region=per_region, instance=instance, workers=workers)
-    )
+    output.present(executions.execute(run, per_region=per_region, instance=place, workers=workers))

@@ -47,10 +47,6 @@ DemonstrationsOption = Annotated[
     typer.Option(metavar="DIR", help="Ask this folder of recordings, not a simulated teacher."),
 ]
 SeedOption = Annotated[int | None, typer.Option(help="Seed of all random draws.")]
-InstanceOption = Annotated[
-    tuple[float, float] | None,
-    typer.Option(metavar="X Y", help="Just this place of the object, in m."),
-]
 WorkersOption = Annotated[
     int | None, typer.Option(help="Processes. Default: all processors.", min=1)
 ]

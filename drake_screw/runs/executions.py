@@ -10,13 +10,14 @@ import numpy as np
 
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
-from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
+from drake_screw.errors import ModelError, RunDirectoryError
 from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Cause, Outcomes, Plan, concatenate
 from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.runs.placing import InstanceLike, placed
 from drake_screw.runs.run import Run, open_run
 from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
@@ -49,7 +50,7 @@ def execute(
     run: PathLike,
     *,
     per_region: int = 2,
-    instance: Sequence[float] | None = None,
+    instance: InstanceLike | None = None,
     workers: int | None = None,
 ) -> Executions:
     """Plan, simulate and report executions of a run.
@@ -62,7 +63,8 @@ def execute(
         run: its directory.
         per_region: executions in every region; instances without a plan are drawn again, and
             reported.
-        instance: x, y and perhaps yaw of each object: execute this one instead.
+        instance: execute this one instead: {object: (x, y[, yaw])}, or the numbers of all objects
+            in their order, as `placed` takes them.
         workers: processes; as many as processors if None.
 
     Raises:
@@ -81,7 +83,7 @@ def execute(
     if instance is None:
         x_y_yaw, outcomes = _fresh_instances(setup, plan, per_region)
     else:
-        x_y_yaw = placed(setup, instance)[None]
+        x_y_yaw = placed(setup.area, instance)[None]
         outcomes = plan(x_y_yaw)
     X_WO = setup.area.X_WO(x_y_yaw)
     by = outcomes.best_attempt
@@ -179,28 +181,6 @@ def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
             file=run.directory.path,
         )
     return run.reader.demonstrations(count)
-
-
-def placed(setup: Setup, numbers: Sequence[float]) -> Array:
-    """The task instance (k, 3) that a user means by x, y and perhaps yaw of each object.
-
-    A yaw may be left out where the work area fixes it. Places outside the work area are allowed.
-
-    Raises:
-        ScenarioError: the wrong number of numbers, or no yaw where it varies.
-    """
-    area, turns = setup.area, setup.area.turning
-    try:
-        instance = np.reshape(np.asarray(numbers, dtype=float), (1, len(area.objects), -1))
-        return area.complete(instance)[0]
-    except ValueError as error:
-        why = f"; the yaw of {', '.join(turns)} varies" if turns else ""
-        yaw = "yaw in rad" if turns else "perhaps yaw in rad"
-        raise ScenarioError(
-            f"an instance of {len(numbers)} numbers: {' '.join(f'{v:g}' for v in numbers)}{why}",
-            remedy=f"Give x and y in m, and {yaw}, of each of: "
-            f"{', '.join(o.name for o in area.objects)}.",
-        ) from error
 
 
 def collision_free_planner(setup: Setup) -> CollisionFreePlanner:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,9 +16,9 @@ from drake_screw.robot import Arm
 from drake_screw.runs.executions import (
     collision_free_planner,
     known_demonstrations,
-    placed,
     why_not,
 )
+from drake_screw.runs.placing import InstanceLike, placed
 from drake_screw.runs.run import open_run
 from drake_screw.typing import PathLike
 
@@ -59,26 +58,27 @@ class Trajectory:
 
 
 def write_trajectory(
-    run: PathLike, instance: Sequence[float], format: str, output: PathLike
+    run: PathLike, instance: InstanceLike, format: str, output: PathLike
 ) -> Trajectory:
     """Plan one instance with a run's demonstrations and write the timed plan.
 
     Args:
         run: its directory.
-        instance: x, y and perhaps yaw of each object.
+        instance: {object: (x, y[, yaw])}, or the numbers of all objects in their order, as `placed`
+            takes them.
         format: of the file, a name that `plugins.find` knows as an exporter.
         output: file to write; it is replaced.
 
     Raises:
-        DrakeScrewError: there is no such format or it is of another robot, no plan for the
-            instance, or the file or the run cannot be used; nothing is written then.
+        DrakeScrewError: there is no such format or it is of another robot, the instance is not
+            one or has no plan, or the file or the run cannot be used; nothing is written then.
     """
     writer = find("exporters", format)
     opened = open_run(run)
     setup = opened.setup
     _check_robot(format, setup.workcell.arm)
     demonstrations = known_demonstrations(opened)
-    x_y_yaw = placed(setup, instance)
+    x_y_yaw = placed(setup.area, instance)
     X_WO = setup.area.X_WO(x_y_yaw)
     planner = collision_free_planner(setup)
     outcomes = planner.any_success(demonstrations, X_WO[None], setup.workcell.start)[0]

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from drake_screw.demonstrations import SegmentationConfig, guiding_poses, segment
@@ -77,15 +77,34 @@ def test_one_screw_has_two_ends(ends: list[np.ndarray]) -> None:
         np.testing.assert_array_equal(segment(path[kept], config), [0, len(kept) - 1])
 
 
+def there_and_back() -> list[np.ndarray]:
+    """101 steps of 0.99901 mm and 100 back of 0.9994 mm, then aside.
+
+    Thinning keeps every sixth pose. The path turns 5 steps, 4.995 mm, behind one that is kept, and
+    10 steps back are 9.994 mm: all but 5 mm on the other side of it, so the next one is kept.
+    """
+    x_y = [(0.0, 0.0), (0.1009, 0.0), (0.1009 - 0.09994, 0.0), (0.1009 - 0.09994, 0.1)]
+    return [pose(np.eye(3), [x, y, 0.0]) for x, y in x_y]
+
+
 @settings(deadline=None, max_examples=25)
 @given(knots(4))
-def test_strict_tolerances_cut_within_the_thinning_of_each_change(
+@example(there_and_back())
+def test_strict_tolerances_cut_at_the_first_pose_kept_behind_each_change(
     poses: list[np.ndarray],
 ) -> None:
-    path = path_through(poses)
-    kept = thin(path, 0.005)
+    """Which is nearer to the change than twice the spacing of thinning and a step of the path.
+
+    Let a be the last pose kept up to the change c, and b the first one kept behind it, where the
+    path is cut. Thinning drops what is nearer to a than the spacing d: |p_c - p_a| < d, and
+    |p_i - p_a| < d for i = b - 1, too. With steps of the path of at most h,
+    |p_b - p_c| <= |p_b - p_i| + |p_i - p_a| + |p_a - p_c| < h + 2 d.
+    """
+    path, spacing = path_through(poses), 0.005
+    kept = thin(path, spacing)
     cuts = kept[segment(path[kept], STRICT)]
     p = path[:, :3, 3]
+    step = np.linalg.norm(np.diff(p, axis=0), axis=1).max()
     changes = [
         int(np.argmin(np.linalg.norm(p - X[:3, 3], axis=1) + quaternion_distance(path, X)))
         for X in poses[1:-1]
@@ -94,7 +113,16 @@ def test_strict_tolerances_cut_within_the_thinning_of_each_change(
     for cut, change in zip(cuts[1:-1], changes, strict=True):
         first_after = kept[np.searchsorted(kept, change, side="right")]
         assert cut == first_after
-        assert np.linalg.norm(p[cut] - p[change]) <= 0.01
+        assert np.linalg.norm(p[cut] - p[change]) < 2.0 * spacing + step
+
+
+def test_a_cut_can_be_as_far_from_its_change_as_thinning_allows() -> None:
+    poses = there_and_back()
+    path = path_through(poses)
+    kept = thin(path, 0.005)
+    cut = kept[segment(path[kept], STRICT)][1]
+    away = np.linalg.norm(path[cut, :3, 3] - poses[1][:3, 3])
+    assert away == pytest.approx(2 * 0.005 + 0.001, abs=1e-5)
 
 
 def fits_by_search(path: np.ndarray, config: SegmentationConfig) -> bool:

@@ -15,9 +15,7 @@ from drake_screw.assembly.preview import preview
 from drake_screw.runs.directory import RunDirectory
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.scenario.schema import Scenario
-from drake_screw.scenario.values import Interval
-from drake_screw.scenario.workcell_blocks import ObjectBlock
+from tests.small_runs import two_objects
 
 QUICK = ["coverage.beta=0.7", "coverage.epsilon=0.15", "seed=1"]
 ADAPTIVE = [*QUICK, "regions={adaptive: {smallest: 0.0625}}"]
@@ -87,25 +85,9 @@ def test_a_finished_run_is_told_again_with_its_cells(whole) -> None:
                 np.testing.assert_array_equal(getattr(cell, name), getattr(stored, name))
 
 
-def two_objects() -> Scenario:
-    """Pouring into a bowl while a cup stands at the side, which may be turned."""
-    one = load_scenario("pouring", [*ADAPTIVE, "demonstrations.budget=2"])
-    ranges = {"x": Interval(0.8, 0.95), "y": Interval(0.2, 0.5)}
-    bowl = one.objects[0].model_copy(update=ranges)
-    cup = ObjectBlock(
-        name="cup",
-        x=Interval(0.7, 0.8),
-        y=Interval(-0.4, -0.4),
-        yaw=Interval(-0.5, 0.5),
-        z=bowl.z,
-        radius=0.04,
-        height=0.08,
-    )
-    return one.model_copy(update={"objects": (bowl, cup)})
-
-
 def test_a_scenario_with_two_objects_runs(tmp_path) -> None:
-    events = list(new_run(two_objects(), tmp_path / "two").events())
+    changes = [*ADAPTIVE, "demonstrations.budget=2"]
+    events = list(new_run(two_objects(changes), tmp_path / "two").events())
     finished = rounds(iter(events))
     assert isinstance(events[-1], Finished)
     assert finished

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from drake_screw.acquisition import Suggestion
-from drake_screw.assembly.setup import Setup
 from drake_screw.errors import DrakeScrewError, PluginError, RunDirectoryError, ScenarioError
-from drake_screw.runs.executions import execute, known_demonstrations, placed
+from drake_screw.runs.executions import execute, known_demonstrations
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.runs.trajectory import write_trajectory
 from drake_screw.scenario.loader import load_scenario
@@ -109,6 +108,15 @@ def test_exports_start_where_the_scenario_does(run, tmp_path) -> None:
         assert data["t"][-1] > 1.0
 
 
+def test_an_instance_by_name_is_that_of_the_numbers(run, tmp_path) -> None:
+    for name, instance in ("one", PLACE), ("other", {"bowl": (*PLACE, 0.0)}):
+        write_trajectory(run, instance, "npz", tmp_path / name)
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "other").read_bytes()
+    with pytest.raises(ScenarioError, match="no object 'bowll'") as error:
+        execute(run, instance={"bowll": PLACE}, workers=1)
+    assert "Did you mean 'bowl'?" in str(error.value)
+
+
 def test_an_export_where_there_is_no_plan_says_why(run, tmp_path) -> None:
     with pytest.raises(ScenarioError, match="no demonstration of this run gives a plan there"):
         write_trajectory(run, OUTSIDE, "npz", tmp_path / "plan.npz")
@@ -124,26 +132,6 @@ def test_an_unknown_format_names_those_there_are(run, tmp_path) -> None:
 def test_an_export_into_nowhere_is_refused(run, tmp_path) -> None:
     with pytest.raises(RunDirectoryError, match="cannot be written"):
         write_trajectory(run, PLACE, "npz", tmp_path / "missing" / "plan.npz")
-
-
-@pytest.mark.parametrize("numbers", [(), (0.8,), (0.8, 0.1, 0.0, 1.0), (0.8, float("nan"))])
-def test_an_instance_takes_two_or_three_numbers(run, numbers) -> None:
-    with pytest.raises(ScenarioError, match="Give x and y in m"):
-        placed(open_run(run).setup, numbers)
-
-
-def test_an_instance_may_have_a_yaw(run) -> None:
-    setup = open_run(run).setup
-    np.testing.assert_array_equal(placed(setup, (0.8, 0.1)), [[0.8, 0.1, 0.0]])
-    np.testing.assert_array_equal(placed(setup, (0.8, 0.1, 0.5)), [[0.8, 0.1, 0.5]])
-
-
-def test_an_instance_needs_a_yaw_that_varies() -> None:
-    setup = Setup(load_scenario("pouring", ["objects.0.yaw=[-0.8, 0.8]"]))
-    with pytest.raises(ScenarioError, match="the yaw of bowl varies") as error:
-        placed(setup, (0.8, 0.1))
-    assert "Give x and y in m, and yaw in rad, of each of: bowl." in str(error.value)
-    np.testing.assert_array_equal(placed(setup, (0.8, 0.1, 0.5)), [[0.8, 0.1, 0.5]])
 
 
 def test_known_demonstrations_have_the_runs_names(run) -> None:
