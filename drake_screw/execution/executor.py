@@ -66,6 +66,8 @@ class _Memory:
 class ScrewPlanExecutor(LeafSystem):
     """Leads an arm's end effector along the constant screws of a plan.
 
+    A free approach in front of them is followed joint by joint.
+
     Every control period it takes the set point of the current segment, a pose on the constant
     screw under the plan's time law and the screw's twist, and turns it into joint velocities by
     Drake's differential inverse kinematics, within the joints' position and velocity limits. The
@@ -174,9 +176,13 @@ class ScrewPlanExecutor(LeafSystem):
         X_WE, J_WE = arm.pose_and_jacobian(q)
         X_WS = plan.segments[now.segment].pose(now.s)
         ended = arrival(plan, t, arm.pose(measured), allowed) if t >= plan.duration else None
-        ended = ended or out_of_reach(now.segment, X_WE, X_WS, allowed)
+        if plan.segments[now.segment].screw:
+            ended = ended or out_of_reach(now.segment, X_WE, X_WS, allowed)
         if ended is not None:
             return replace(memory, status=ended)
+        if not plan.segments[ahead.segment].screw:
+            v = ahead.v + self.control.pose_gain * (now.q - q)
+            return replace(memory, v=self._within_limits(q, v))
         V_WS = ahead.rate * plan.segments[ahead.segment].twist
         V_WE = shift(V_WS, X_WE[:3, 3]) + self.control.pose_gain * _difference(X_WE, X_WS)
         self._parameters.set_nominal_joint_position(ahead.q)

@@ -61,7 +61,7 @@ class ExecutionReport:
         velocity: greatest joint velocity, over its limit.
         tracking: of the measured end effector from the set point of the same time.
         screws: of the measured end effector from the commanded screw whatever the time, for each
-            segment that was begun.
+            segment that was begun; of a free approach from the planned path.
         contacts: of the robot with anything, itself included.
         final: of the measured end effector from the last guiding pose, when it ended.
     """
@@ -122,6 +122,11 @@ def make_report(
         errors = []
         for i in range(segment.max() + 1):
             piece, here = plan.segments[i], segment == i
+            if not piece.screw:
+                planned = np.stack([p.q for p, chosen in zip(points, here, strict=True) if chosen])
+                errors.append(_distances(X_WE[here], arm.pose(planned)))
+                screws.append(_deviation(errors[-1]))
+                continue
             X_WS = exp(s[here, None] * piece.twist) @ piece.X_WA
             errors.append(_distances(X_WE[here], X_WS))
             nearest = s[here] + _ahead(X_WE[here], X_WS, piece.twist)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -55,13 +55,14 @@ class TimeLimits:
 
 @dataclass(frozen=True, eq=False)
 class TimedSegment:
-    """One constant-screw segment with its time law, sampled evenly from rest to rest.
+    """One segment, a constant screw as a rule, with its time law, sampled evenly from rest to rest.
 
     Attributes:
         X_WA, X_WB: (4, 4) where the end effector starts and ends.
         period: s between samples.
         s, rate: (m,) fraction of the screw done, and its time derivative in 1/s.
         q, v: (m, n) the planned joint path, rad, and its time derivative.
+        screw: whether the end effector follows a screw; a free approach follows its joint path.
     """
 
     X_WA: Array
@@ -71,6 +72,7 @@ class TimedSegment:
     rate: Array
     q: Array
     v: Array
+    screw: bool = True
 
     @property
     def duration(self) -> float:
@@ -184,7 +186,8 @@ def time_plan(
         inside = (plan.segment == i) & (plan.s > 0.0)
         q = np.concatenate([start[None], plan.q[inside]])
         s = np.concatenate([[0.0], plan.s[inside]])
-        pieces.append(_timed(X_WA, X_WB, s, q, arm, limits))
+        piece = _timed(X_WA, X_WB, s, q, arm, limits)
+        pieces.append(replace(piece, screw=i > 0 or not plan.approach))
         start = q[-1]
     return TimedPlan(tuple(pieces))
 

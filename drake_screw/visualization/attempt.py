@@ -13,7 +13,12 @@ from drake_screw.planning import Cause, Outcomes, Plan, Turned
 from drake_screw.robot import Arm
 from drake_screw.screws import Screw, screw_between
 from drake_screw.typing import Array
-from drake_screw.visualization.screw_drawing import STRAIGHT, axis_distance, looks_straight
+from drake_screw.visualization.screw_drawing import (
+    STRAIGHT,
+    axis_distance,
+    looks_straight,
+    screw_track,
+)
 
 DONE, FAILED, AHEAD = "done", "failed", "never reached"
 
@@ -71,9 +76,24 @@ class Attempt:
             for i in range(len(self.guides))
         )
 
+    def path(self, segment: int, first: float, last: float) -> Array:
+        """(m, 3) the end effector's way along a segment, from one fraction of it to another."""
+        if segment > 0 or not self.plan.approach:
+            return screw_track(self.starts[segment], self.guides[segment], first, last)
+        if last <= first or not len(self._approach):
+            return np.empty((0, 3))
+        s = np.linspace(0.0, 1.0, len(self._approach))
+        return self._approach[(s >= first) & (s <= last)]
+
+    @cached_property
+    def _approach(self) -> Array:
+        """(m, 3) the end effector's way along a free approach."""
+        q = self.plan.q[self.plan.segment == 0]
+        return self.arm.pose(q)[:, :3, 3] if len(q) > 1 else np.empty((0, 3))
+
     @cached_property
     def screws(self) -> Screw:
-        """The constant screw of each segment, arrays (g,)."""
+        """The constant screw of each segment, arrays (g,); of a free approach it is not followed."""
         return screw_between(self.starts, self.guides)
 
     @cached_property
@@ -186,6 +206,8 @@ def _turns(attempt: Attempt) -> str:
 
 def describe_segment(attempt: Attempt, segment: int) -> str:
     """A segment's screw in words and numbers."""
+    if segment == 0 and attempt.plan.approach:
+        return "free approach: a joint motion to the first guiding pose"
     screw = attempt.screws
     angle, along = float(screw.angle[segment]), float(screw.translation[segment])
     turn = f"{np.degrees(angle):.1f}°"

@@ -22,7 +22,7 @@ from drake_screw.visualization.attempt import AHEAD, DONE, FAILED, Attempt
 from drake_screw.visualization.drawing import draw, draw_frames
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
-from drake_screw.visualization.screw_drawing import draw_screw, screw_track
+from drake_screw.visualization.screw_drawing import draw_screw
 
 BOWL = "#f4c95d"
 GHOST_OPACITY, AHEAD_OPACITY = 0.22, 0.35
@@ -91,8 +91,9 @@ class Inspector:
         for segment, status in enumerate(attempt.status):
             self._draw_segment(f"{path}/segments/{segment + 1:02d}", attempt, segment, status)
             X_WA, X_WB = attempt.starts[segment], attempt.guides[segment]
-            color = STATUS_COLORS[status]
-            draw_screw(self.meshcat, f"{path}/axes/{segment + 1:02d}", X_WA, X_WB, color)
+            if segment > 0 or not attempt.plan.approach:
+                axis, color = f"{path}/axes/{segment + 1:02d}", STATUS_COLORS[status]
+                draw_screw(self.meshcat, axis, X_WA, X_WB, color)
         draw_frames(self.meshcat, f"{path}/frames", attempt.guides, size=0.045)
         self._draw_turns(f"{path}/turned", attempt)
         samples = attempt.samples(SAMPLES)
@@ -131,8 +132,7 @@ class Inspector:
         fraction = float(attempt.plan.outcome.fraction) if status == FAILED else 1.0
         ends = {"way": (0.0, fraction), "rest": (fraction, 1.0)}
         for name, (first, last) in ends.items():
-            X_WA, X_WB = attempt.starts[segment], attempt.guides[segment]
-            track = screw_track(X_WA, X_WB, first, last)
+            track = attempt.path(segment, first, last)
             if len(track) < 2:
                 continue
             thin = name == "rest" or status == AHEAD

@@ -53,6 +53,7 @@ def attempt_record(attempt: Attempt) -> dict[str, Any]:
         "segments": [
             {
                 "status": status,
+                "kind": "approach" if i == 0 and attempt.plan.approach else "screw",
                 "axis": screw.axis[i].tolist(),
                 "point": screw.point[i].tolist(),
                 "angle": float(screw.angle[i]),
