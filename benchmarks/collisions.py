@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from drake_screw.runs.executions import collision_free_planner, known_demonstrations
 from drake_screw.runs.run import open_run
 from drake_screw.tasks import draw_in_all
 from drake_screw.visualization.palette import failure_color, ink_on
@@ -24,12 +23,12 @@ ROUND = 2_000_000
 def measure(run: Path, per_region: int) -> tuple[str, list[np.ndarray], np.ndarray, list[float]]:
     """Name, failure rates (K,) without and with collisions, bounds (K, 2, 2), instances/s."""
     opened = open_run(run)
-    setup, demonstrations = opened.setup, known_demonstrations(opened)
+    setup, demonstrations = opened.setup, opened.demonstrations
     regions, start = setup.regions, setup.workcell.start
     places, _ = draw_in_all(regions, per_region, seed=setup.scenario.seed, round=ROUND)
     X_WO = setup.area.X_WO(places)
     rates, speeds = [], []
-    for planner in (setup.batch_planner, collision_free_planner(setup)):
+    for planner in (setup.batch_planner, setup.careful_planner):
         planner.any_success(demonstrations, X_WO[:2], start)
         began = time.perf_counter()
         outcomes = planner.any_success(demonstrations, X_WO, start)

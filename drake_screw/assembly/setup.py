@@ -13,24 +13,16 @@ from numpy.typing import ArrayLike
 from drake_screw.acquisition import Evaluator, Teacher, TreeEvaluator
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
+from drake_screw.assembly.placing import InstanceLike, placed
+from drake_screw.assembly.planning_setup import PlanningSetup
+from drake_screw.assembly.ranked_plans import RankedPlan, best_plan
 from drake_screw.assembly.recorder import Learning, Recorder
-from drake_screw.assembly.sanity import check_reach, check_start
-from drake_screw.assembly.symmetries import symmetries
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
-from drake_screw.planning import BatchPlanner, Outcomes, Planner, Symmetries
-from drake_screw.planning.approach import seeds
-from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.planning import Outcomes, Planner
 from drake_screw.plugins import find
-from drake_screw.robot import (
-    ObjectConfig,
-    RobotConfig,
-    TableConfig,
-    Workcell,
-    build_workcell,
-)
 from drake_screw.scenario.schema import Scenario
-from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, free_axes
+from drake_screw.tasks import free_axes
 from drake_screw.typing import PathLike
 
 
@@ -43,7 +35,7 @@ class Parts(TypedDict, total=False):
     motion: Motion | None
 
 
-class Setup:
+class Setup(PlanningSetup):
     """All that a scenario describes, each part built when it is first asked for.
 
     What is passed in takes the place of the part that the scenario describes. It is made when it is
@@ -72,7 +64,7 @@ class Setup:
     """
 
     def __init__(self, scenario: Scenario, **parts: Unpack[Parts]) -> None:
-        self.scenario = scenario
+        super().__init__(scenario)
         self._parts = parts
         asks = scenario.teacher.kind == "interactive"
         self.passed_in = tuple(
@@ -82,92 +74,13 @@ class Setup:
         )
 
     @cached_property
-    def robot(self) -> RobotConfig:
-        """Which arm of which model."""
-        block = self.scenario.robot
-        return RobotConfig(
-            str(block.model),
-            block.joints,
-            block.end_effector,
-            block.start,
-            block.base,
-            block.parked,
-        )
-
-    @cached_property
-    def table(self) -> TableConfig | None:
-        """The table, if there is one."""
-        block = self.scenario.table
-        if block is None:
-            return None
-        return TableConfig(block.center, block.size, block.top, block.thickness)
-
-    @cached_property
-    def objects(self) -> tuple[ObjectConfig, ...]:
-        """Shapes of the objects."""
-        return tuple(ObjectConfig(o.name, o.radius, o.height) for o in self.scenario.objects)
-
-    @cached_property
-    def workcell(self) -> Workcell:
-        """The Drake diagram.
-
-        Raises:
-            ModelError: the model lacks a name.
-            ScenarioError: the start is outside the limits, or the work area out of reach.
-        """
-        workcell = build_workcell(self.robot, table=self.table, objects=self.objects)
-        check_start(self.scenario, workcell.arm)
-        check_reach(self.scenario, workcell.arm, self.area)
-        return workcell
-
-    @cached_property
-    def area(self) -> WorkArea:
-        """Where the objects may stand."""
-        return WorkArea(
-            tuple(
-                ObjectArea(
-                    o.name,
-                    (o.x.lower, o.y.lower, o.yaw.lower),
-                    (o.x.upper, o.y.upper, o.yaw.upper),
-                    o.z,
-                )
-                for o in self.scenario.objects
-            )
-        )
-
-    @cached_property
-    def regions(self) -> GridRegions:
-        """The bandit's arms; a single one, from which they start, where they are adaptive."""
-        return GridRegions(self.area, np.array(self.scenario.cells))
-
-    @cached_property
-    def batch_planner(self) -> BatchPlanner:
-        """The planner that watches joint limits and reach."""
-        chain, block = self.workcell.arm.screw_chain(), self.scenario.planner
-        return BatchPlanner(
-            chain,
-            tolerance=block.tolerance,
-            symmetries=self.symmetries,
-            seeds=seeds(chain, block.ik_seeds) if block.approach == "free" else None,
-        )
-
-    @cached_property
-    def symmetries(self) -> Symmetries:
-        """Turns of objects and of what the end effector holds, which leave the task as it is.
-
-        Raises:
-            ModelError: the tool's frame is not one that the end effector carries.
-        """
-        return symmetries(self.scenario, self.workcell.arm)
-
-    @cached_property
     def planner(self) -> Planner:
         """The planner that decides; it watches collisions, too, where the scenario wants it."""
         make = self._parts.get("planner")
         if make is not None:
             return make(self)
         if self.scenario.planner.collision:
-            return CollisionFreePlanner(self.batch_planner, self.workcell)
+            return self.careful_planner
         return self.batch_planner
 
     @cached_property
@@ -285,6 +198,32 @@ class Setup:
         x_y_yaw = self.area.complete(instances)
         return self.planner.all_outcomes(
             demonstrations, self.area.X_WO(x_y_yaw), self.workcell.start
+        )
+
+    def plan(
+        self,
+        demonstrations: Sequence[Demonstration],
+        instance: InstanceLike,
+        *,
+        start: ArrayLike | None = None,
+        most: int = 5,
+    ) -> RankedPlan:
+        """The best plan for a task instance: that with the largest margin which touches nothing.
+
+        Args:
+            demonstrations: to choose from.
+            instance: {object: (x, y[, yaw])}, or the numbers of all objects, as for `placed`.
+            start: (n,) rad or m, where the arm is; the scenario's start if None.
+            most: plans to return, the best one and its alternatives.
+
+        Raises:
+            ScenarioError: the instance is not one, or there is no plan for it; it says why.
+        """
+        X_WO = self.area.X_WO(placed(self.area, instance))
+        q_start = self.workcell.start if start is None else np.asarray(start, dtype=float)
+        names = [o.name for o in self.area.objects]
+        return best_plan(
+            self.careful_planner, self.workcell.arm, demonstrations, X_WO, q_start, names, most
         )
 
     def evaluator(self, progress: Progress | None = None) -> Evaluator | TreeEvaluator:

@@ -56,7 +56,7 @@ class InstanceCommand(TyperCommand):
 
 
 def parse_instance(words: Sequence[str]) -> dict[str, tuple[float, ...]] | tuple[float, ...]:
-    """The words of the option as what `drake_screw.runs.placing.placed` takes.
+    """The words of the option as what `drake_screw.assembly.placing.placed` takes.
 
     >>> parse_instance(["bowl=0.9,0.1", "cup=0.8,-0.2,0.5"])
     {'bowl': (0.9, 0.1), 'cup': (0.8, -0.2, 0.5)}

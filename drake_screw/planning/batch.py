@@ -125,18 +125,25 @@ class BatchPlanner:
         return outcomes.replaced(left, furthest(outcomes[left], again))
 
     def variant_outcomes(
-        self, demonstration: Demonstration, X_WO: ArrayLike, q_start: ArrayLike
+        self,
+        demonstration: Demonstration,
+        X_WO: ArrayLike,
+        q_start: ArrayLike,
+        *,
+        others: bool = True,
     ) -> Outcomes:
         """Plan every instance with every variant of a demonstration, whether or not one succeeds.
 
-        Takes what `all_outcomes` does, and returns outcomes (N, V), by the number of the variant.
+        Takes what `all_outcomes` does, and returns outcomes (N, V), by the number of the variant;
+        without `others` only of those that come from the arm's own start.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         check_question(self.chain, [demonstration], X_WO, q_start)
-        failed = failed_start(self.chain, q_start, (len(X_WO), self.variants(demonstration)))
+        starts = range(1 + len(self.others)) if others else range(1)
+        columns = self._columns([demonstration], X_WO, starts)
+        failed = failed_start(self.chain, q_start, (len(X_WO), len(columns.X_OE)))
         if failed is not None:
             return failed
-        columns = self._columns([demonstration], X_WO, range(1 + len(self.others)))
         answers = self._answers(columns, X_WO, q_start, None, 1)
         return concatenate([columns.each(found) for found in answers])
 

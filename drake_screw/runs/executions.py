@@ -8,17 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
+from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.setup import Setup
-from drake_screw.demonstrations import Demonstration
-from drake_screw.errors import ModelError, RunDirectoryError
+from drake_screw.assembly.why_not import why_not
+from drake_screw.errors import ModelError
 from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
-from drake_screw.planning import Cause, Outcomes, Plan, concatenate
-from drake_screw.planning.collisions import CollisionFreePlanner
-from drake_screw.runs.placing import InstanceLike, placed
-from drake_screw.runs.run import Run, open_run
+from drake_screw.planning import Outcomes, concatenate
+from drake_screw.runs.run import open_run
 from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.lifetime import scratch
@@ -55,8 +54,8 @@ def execute(
 ) -> Executions:
     """Plan, simulate and report executions of a run.
 
-    Every instance is planned with the run's demonstrations, the nearest first, until one gives a
-    plan that keeps the limits and touches nothing; that plan is simulated. A table, a summary and
+    Of every instance the best plan with the run's demonstrations is simulated: that with the
+    largest margin to the joint limits which touches nothing. A table, a summary and
     a recording that plays go into a new folder ``executions/<time>`` of the run.
 
     Args:
@@ -72,9 +71,9 @@ def execute(
             the model lacks inertia, or the folder cannot be written.
     """
     opened = open_run(run)
-    setup, demonstrations = opened.setup, known_demonstrations(opened)
+    setup, demonstrations = opened.setup, opened.demonstrations
     _check_masses(setup)
-    planner = collision_free_planner(setup)
+    planner = setup.careful_planner
 
     def plan(x_y_yaw: Array) -> Outcomes:
         X_WO = setup.area.X_WO(x_y_yaw)
@@ -86,31 +85,21 @@ def execute(
         x_y_yaw = placed(setup.area, instance)[None]
         outcomes = plan(x_y_yaw)
     X_WO = setup.area.X_WO(x_y_yaw)
-    by = outcomes.best_attempt
-    solved = np.flatnonzero(outcomes.any_success)
-    plans = setup.batch_planner.plans(
-        demonstrations,
-        X_WO[solved],
-        setup.workcell.start,
-        by[solved],
-        outcomes.best.variant[solved],
-    )
-    jobs = [Job(plan, X_WO[i]) for i, plan in zip(solved, plans, strict=True)]
+    solved = np.flatnonzero(outcomes.any_success).tolist()
+    best = {i: setup.plan(demonstrations, x_y_yaw[i], most=1) for i in solved}
+    jobs = [Job(best[i].plan, X_WO[i]) for i in solved]
     config = StationConfig(setup.robot, setup.table, setup.objects)
-    done = dict(zip(solved.tolist(), execute_all(config, jobs, workers=workers), strict=True))
-    turns = {
-        i: _turned(setup, demonstrations[by[i]], X_WO[i], plan)
-        for i, plan in zip(solved.tolist(), plans, strict=True)
-    }
+    done = dict(zip(solved, execute_all(config, jobs, workers=workers), strict=True))
     trials = []
     for i, place in enumerate(x_y_yaw):
-        execution = done.get(i)
-        name = demonstrations[by[i]].name if i in done else ""
-        why = ""
-        if i not in done:
-            why = why_not(outcomes[i], demonstrations, X_WO[i], planner, setup)
         region = int(setup.regions.index(place))
-        trials.append(Trial(region, place, name, why, execution, turns.get(i, ())))
+        if i in done:
+            name, turned = best[i].demonstration.name, best[i].turned
+            angles = tuple((turn.body, turn.angle) for turn in turned)
+            trials.append(Trial(region, place, name, "", done[i], angles))
+        else:
+            why = why_not(outcomes[i], demonstrations, X_WO[i], setup.workcell.start, planner)
+            trials.append(Trial(region, place, "", why, None))
     found = summarize(trials)
 
     def fill(folder: Path) -> None:
@@ -131,14 +120,6 @@ def execute(
     with writing(folder, remedy):
         write_folder(folder, fill)
     return Executions(folder, found)
-
-
-def _turned(
-    setup: Setup, demonstration: Demonstration, X_WO: Array, plan: Plan
-) -> tuple[tuple[str, float], ...]:
-    names = [o.name for o in setup.area.objects]
-    turned = setup.symmetries.named(demonstration, X_WO, plan.angles, names)
-    return tuple((turn.body, turn.angle) for turn in turned)
 
 
 def station_graphviz(run: PathLike) -> str:
@@ -164,60 +145,6 @@ def _check_masses(setup: Setup) -> None:
                 remedy="Give the links an <inertial> with mass and inertia; planning does without.",
                 file=setup.workcell.model_file,
             )
-
-
-def known_demonstrations(run: Run) -> tuple[Demonstration, ...]:
-    """The demonstrations that a run has so far.
-
-    Raises:
-        RunDirectoryError: it has none.
-        RecordingError: one cannot be read.
-    """
-    count = len(run.directory.record.demonstrations)
-    if count == 0:
-        raise RunDirectoryError(
-            "this run has no demonstrations yet",
-            remedy=f"Carry it on first: drake-screw run --resume {run.directory.path}",
-            file=run.directory.path,
-        )
-    return run.reader.demonstrations(count)
-
-
-def collision_free_planner(setup: Setup) -> CollisionFreePlanner:
-    """Plans what is to be executed, whether or not the scenario looks at collisions."""
-    return CollisionFreePlanner(setup.batch_planner, setup.workcell)
-
-
-def why_not(
-    outcomes: Outcomes,
-    demonstrations: Sequence[Demonstration],
-    X_WO: Array,
-    planner: CollisionFreePlanner,
-    setup: Setup,
-) -> str:
-    """Why no demonstration solves an instance, by the best attempt.
-
-    Args:
-        outcomes: (D,).
-        demonstrations: D of them.
-        X_WO: (k, 4, 4).
-        planner: that gave the outcomes.
-        setup: of the scenario.
-    """
-    best = int(outcomes.best_attempt)
-    cause, segment = Cause(int(outcomes.cause[best])), int(outcomes.segment[best]) + 1
-    chosen, start = demonstrations[best], setup.workcell.start
-    name = chosen.name
-    match cause:
-        case Cause.JOINT_LIMIT:
-            joint = setup.workcell.arm.joint_names[int(outcomes.joint[best])]
-            return f"with {name}, {joint} meets its limit in segment {segment}"
-        case Cause.COLLISION:
-            plan = planner.planner.plan(chosen, X_WO, start, int(outcomes.variant[best]))
-            hit = planner.checker.explain(plan, X_WO)
-            return f"with {name}, {hit}"
-        case _:
-            return f"with {name}, segment {segment} is out of reach"
 
 
 def _fresh_instances(

@@ -8,6 +8,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Unpack
 
+from numpy.typing import ArrayLike
+
 from drake_screw.acquisition import (
     Event,
     Finished,
@@ -15,7 +17,9 @@ from drake_screw.acquisition import (
     RoundFinished,
     Status,
 )
+from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Parts, Setup
+from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.files import file_hash
 from drake_screw.runs.certificate import Certificate, certificate
@@ -51,6 +55,40 @@ class Run:
     def reader(self) -> RunReader:
         """What the directory holds."""
         return RunReader(self.setup, self.directory)
+
+    @property
+    def demonstrations(self) -> tuple[Demonstration, ...]:
+        """The demonstrations that the run has so far.
+
+        Raises:
+            RunDirectoryError: it has none.
+            RecordingError: one cannot be read.
+        """
+        count = len(self.directory.record.demonstrations)
+        if count == 0:
+            raise RunDirectoryError(
+                "this run has no demonstrations yet",
+                remedy=f"Carry it on first: drake-screw run --resume {self.directory.path}",
+                file=self.directory.path,
+            )
+        return self.reader.demonstrations(count)
+
+    def plan(
+        self, *, start: ArrayLike | None = None, most: int = 5, **objects: ArrayLike
+    ) -> RankedPlan:
+        """The best plan for a task instance with the run's demonstrations, in memory.
+
+        Args:
+            start: (n,) rad or m, where the arm is; the scenario's start if None.
+            most: plans to return, the best one and its alternatives.
+            objects: x, y in m and, where it varies, yaw in rad of each object, by its name:
+                ``run.plan(bowl=(0.9, 0.1))``. `Setup.plan` takes objects of any name.
+
+        Raises:
+            DrakeScrewError: the run has no demonstrations or cannot be read; the instance is not
+                one; or there is no plan for it, and why.
+        """
+        return self.setup.plan(self.demonstrations, objects, start=start, most=most)
 
     @property
     def certificate(self) -> Certificate | None:

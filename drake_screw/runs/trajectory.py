@@ -7,18 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
 from drake_screw.errors import ScenarioError
-from drake_screw.execution import time_plan
 from drake_screw.files import WRITABLE_OUTPUT, write_bytes, writing
 from drake_screw.plugins import find, names
 from drake_screw.robot import Arm
-from drake_screw.runs.executions import (
-    collision_free_planner,
-    known_demonstrations,
-    why_not,
-)
-from drake_screw.runs.placing import InstanceLike, placed
 from drake_screw.runs.run import open_run
 from drake_screw.typing import PathLike
 
@@ -31,9 +25,11 @@ class Trajectory:
         output: the file.
         format: of the file, a name that `plugins.find` knows as an exporter.
         demonstration: name of the one whose plan it is.
-        segments: screw segments of the plan.
+        segments: of the plan.
         duration: s.
-        turned: how symmetric objects are turned, in words; empty where there is none.
+        turned: rad, by which symmetric objects are turned, by their names.
+        margin: how near a joint comes to a limit, in parts of its range.
+        tightest: that joint.
         outside: whether the instance lies outside the work area.
     """
 
@@ -42,7 +38,9 @@ class Trajectory:
     demonstration: str
     segments: int
     duration: float
-    turned: str
+    turned: dict[str, float]
+    margin: float
+    tightest: str
     outside: bool
 
     def __str__(self) -> str:
@@ -50,8 +48,9 @@ class Trajectory:
         return "\n".join(
             [
                 *lines,
-                f"planned with {self.demonstration}: {self.segments} screw segments, "
-                f"{self.duration:.1f} s{self.turned and f', with {self.turned}'}",
+                f"planned with {self.demonstration}{_words(self.turned)}: "
+                f"{self.segments} segments, {self.duration:.1f} s; {self.tightest} comes nearest "
+                f"to a limit, {self.margin:.1%} of its range away",
                 f"written to {self.output}",
             ]
         )
@@ -77,36 +76,27 @@ def write_trajectory(
     opened = open_run(run)
     setup = opened.setup
     _check_robot(format, setup.workcell.arm)
-    demonstrations = known_demonstrations(opened)
     x_y_yaw = placed(setup.area, instance)
-    X_WO = setup.area.X_WO(x_y_yaw)
-    planner = collision_free_planner(setup)
-    outcomes = planner.any_success(demonstrations, X_WO[None], setup.workcell.start)[0]
-    arm = setup.workcell.arm
-    if not outcomes.any_success:
-        why = why_not(outcomes, demonstrations, X_WO, planner, setup)
-        raise ScenarioError(
-            f"no demonstration of this run gives a plan there: {why}",
-            remedy="Choose another instance, or carry the run on with more demonstrations.",
-        )
-    chosen = demonstrations[int(outcomes.best_attempt)]
-    variant = int(outcomes.best.variant)
-    plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start, variant)
-    timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), plan.guides]), arm)
-    named = [o.name for o in setup.area.objects]
-    turned = setup.symmetries.named(chosen, X_WO, plan.angles, named)
+    best = setup.plan(opened.demonstrations, x_y_yaw, most=1)
     output = Path(output)
     with writing(output, WRITABLE_OUTPUT):
-        write_bytes(output, writer(timed, arm))
+        write_bytes(output, writer(best.timed, setup.workcell.arm))
     return Trajectory(
         output=output,
         format=format,
-        demonstration=chosen.name,
-        segments=len(timed.segments),
-        duration=timed.duration,
-        turned=" and ".join(map(str, turned)),
+        demonstration=best.demonstration.name,
+        segments=len(best.timed.segments),
+        duration=best.timed.duration,
+        turned={turn.body: turn.angle for turn in best.turned},
+        margin=best.margin,
+        tightest=best.tightest,
         outside=not setup.area.contains(x_y_yaw),
     )
+
+
+def _words(turned: dict[str, float]) -> str:
+    each = (f", with the {body} turned by {np.degrees(a):+.0f}°" for body, a in turned.items())
+    return "".join(each).replace("-", "−")
 
 
 def _check_robot(format: str, arm: Arm) -> None:

@@ -93,7 +93,7 @@ class Attempt:
 
     @cached_property
     def screws(self) -> Screw:
-        """The constant screw of each segment, arrays (g,); of a free approach it is not followed."""
+        """The constant screw of each segment, arrays (g,); a free approach does not follow it."""
         return screw_between(self.starts, self.guides)
 
     @cached_property

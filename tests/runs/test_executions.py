@@ -11,7 +11,7 @@ import pytest
 
 from drake_screw.acquisition import Suggestion
 from drake_screw.errors import DrakeScrewError, PluginError, RunDirectoryError, ScenarioError
-from drake_screw.runs.executions import execute, known_demonstrations
+from drake_screw.runs.executions import execute
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.runs.trajectory import write_trajectory
 from drake_screw.scenario.loader import load_scenario
@@ -135,7 +135,7 @@ def test_an_export_into_nowhere_is_refused(run, tmp_path) -> None:
 
 
 def test_known_demonstrations_have_the_runs_names(run) -> None:
-    (demonstration,) = known_demonstrations(open_run(run))
+    (demonstration,) = open_run(run).demonstrations
     assert demonstration.name == "shown"
 
 

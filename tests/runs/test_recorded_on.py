@@ -27,7 +27,7 @@ from drake_screw.errors import (
     ScenarioError,
 )
 from drake_screw.resources import find_resource
-from drake_screw.runs.executions import execute, known_demonstrations
+from drake_screw.runs.executions import execute
 from drake_screw.runs.outcome_table import tabulate_outcomes
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.runs.trajectory import write_trajectory
@@ -156,7 +156,7 @@ def test_the_run_directory_keeps_the_recordings_of_the_other_robot(
     assert run.setup.scenario == load_scenario(finished / "scenario.yaml")
     rounds = [e for e in run.replay() if isinstance(e, RoundFinished)]
     assert len(rounds) == len(record["rounds"])
-    for demonstration in known_demonstrations(run):
+    for demonstration in run.demonstrations:
         recording = read(library / demonstration.name, baxter)
         expected = demonstration_from_recording(recording, baxter.workcell.arm)
         np.testing.assert_array_equal(demonstration.X_OE, expected.X_OE)
@@ -187,7 +187,7 @@ def test_plans_are_executed_and_exported_with_the_own_arm(finished: Path, tmp_pa
     rng = np.random.default_rng(5)
     X = rng.uniform(setup.area.lower, setup.area.upper, (50, 1, 3))
     outcomes = setup.planner.any_success(
-        known_demonstrations(open_run(finished)), setup.area.X_WO(X), setup.workcell.start
+        open_run(finished).demonstrations, setup.area.X_WO(X), setup.workcell.start
     )
     place = X[int(np.argmax(outcomes.any_success))][0, :2].tolist()
     before = set(finished.iterdir())
@@ -218,7 +218,7 @@ def test_listed_recordings_are_of_the_other_robot_and_the_teachers_of_the_own(
     assert [entry["robot"] for entry in record["demonstrations"]] == ["baxter", None]
     header = (tmp_path / "run" / record["demonstrations"][1]["folder"] / "joint_angles.csv").open()
     assert header.readline().strip().split(",") == ["time", *IIWA]
-    first, second = known_demonstrations(open_run(tmp_path / "run"))
+    first, second = open_run(tmp_path / "run").demonstrations
     assert first.X_OE.shape[1:] == second.X_OE.shape[1:] == (4, 4)
 
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from drake_screw.assembly.placing import placed
 from drake_screw.errors import ScenarioError
-from drake_screw.runs.placing import placed
 from drake_screw.tasks import ObjectArea, WorkArea
 
 BOWL = ObjectArea("bowl", (0.7, -0.2, 0.25), (1.1, 0.8, 0.25), 0.0)

@@ -1,0 +1,102 @@
+"""The part of a scenario that planning is about: workcell, work area and planner."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from drake_screw.assembly.sanity import check_reach, check_start
+from drake_screw.assembly.symmetries import symmetries
+from drake_screw.assembly.workcell_parts import (
+    object_configs,
+    robot_config,
+    table_config,
+    work_area,
+)
+from drake_screw.planning import BatchPlanner, Symmetries
+from drake_screw.planning.approach import seeds
+from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.robot import (
+    ObjectConfig,
+    RobotConfig,
+    TableConfig,
+    Workcell,
+    build_workcell,
+)
+from drake_screw.scenario.schema import Scenario
+from drake_screw.tasks import GridRegions, WorkArea
+
+
+class PlanningSetup:
+    """Workcell, work area and planner of a scenario, each built when it is first asked for.
+
+    Args:
+        scenario: the description.
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = scenario
+
+    @cached_property
+    def robot(self) -> RobotConfig:
+        """Which arm of which model."""
+        return robot_config(self.scenario)
+
+    @cached_property
+    def table(self) -> TableConfig | None:
+        """The table, if there is one."""
+        return table_config(self.scenario)
+
+    @cached_property
+    def objects(self) -> tuple[ObjectConfig, ...]:
+        """Shapes of the objects."""
+        return object_configs(self.scenario)
+
+    @cached_property
+    def workcell(self) -> Workcell:
+        """The Drake diagram.
+
+        Raises:
+            ModelError: the model lacks a name.
+            ScenarioError: the start is outside the limits, or the work area out of reach.
+        """
+        workcell = build_workcell(self.robot, table=self.table, objects=self.objects)
+        check_start(self.scenario, workcell.arm)
+        check_reach(self.scenario, workcell.arm, self.area)
+        return workcell
+
+    @cached_property
+    def area(self) -> WorkArea:
+        """Where the objects may stand."""
+        return work_area(self.scenario)
+
+    @cached_property
+    def regions(self) -> GridRegions:
+        """The bandit's arms; a single one, from which they start, where they are adaptive."""
+        return GridRegions(self.area, np.array(self.scenario.cells))
+
+    @cached_property
+    def batch_planner(self) -> BatchPlanner:
+        """The planner that watches joint limits and reach."""
+        chain, block = self.workcell.arm.screw_chain(), self.scenario.planner
+        return BatchPlanner(
+            chain,
+            tolerance=block.tolerance,
+            symmetries=self.symmetries,
+            seeds=seeds(chain, block.ik_seeds) if block.approach == "free" else None,
+        )
+
+    @cached_property
+    def symmetries(self) -> Symmetries:
+        """Turns of objects and of what the end effector holds, which leave the task as it is.
+
+        Raises:
+            ModelError: the tool's frame is not one that the end effector carries.
+        """
+        return symmetries(self.scenario, self.workcell.arm)
+
+    @cached_property
+    def careful_planner(self) -> CollisionFreePlanner:
+        """Plans what is to be executed, whether or not the scenario looks at collisions."""
+        return CollisionFreePlanner(self.batch_planner, self.workcell)

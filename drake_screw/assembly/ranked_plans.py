@@ -1,0 +1,181 @@
+"""The best plan for a task instance, and the next best ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from drake_screw.assembly.why_not import why_not
+from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import ScenarioError
+from drake_screw.execution import TimedPlan, TimeLimits, time_plan
+from drake_screw.planning import Outcomes, Plan, Turned
+from drake_screw.planning.batch import BatchPlanner
+from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.robot import Arm
+from drake_screw.typing import Array
+
+PERIOD = 0.01
+"""s, between the samples of a plan in time."""
+
+CHECKED = 8
+"""Plans that are looked at for collisions together, the best ones first."""
+
+
+@dataclass(frozen=True, eq=False)
+class RankedPlan:
+    """A plan that can be executed, with what it was chosen by.
+
+    Attributes:
+        demonstration: that was carried over.
+        plan: its joint path.
+        turned: how symmetric bodies are turned.
+        arm: that it is for.
+        speed: how fast it is to be executed.
+        alternatives: the next best plans, the best one first.
+    """
+
+    demonstration: Demonstration
+    plan: Plan
+    turned: tuple[Turned, ...]
+    arm: Arm
+    speed: TimeLimits
+    alternatives: tuple[RankedPlan, ...] = ()
+
+    @cached_property
+    def margins(self) -> dict[str, float]:
+        """How near each joint comes to a limit, in parts of its range: 0 at it, 0.5 at most."""
+        part = self.arm.margin(self.plan.q).min(axis=0) / (self.arm.upper - self.arm.lower)
+        return dict(zip(self.arm.joint_names, part.tolist(), strict=True))
+
+    @property
+    def margin(self) -> float:
+        """The least of `margins`: the larger, the better the plan."""
+        return min(self.margins.values())
+
+    @property
+    def tightest(self) -> str:
+        """The joint that has the least margin."""
+        return min(self.margins, key=self.margins.__getitem__)
+
+    @cached_property
+    def length(self) -> float:
+        """rad (or m), length of the joint path; of plans with the same margin the shorter wins."""
+        return float(np.linalg.norm(np.diff(self.plan.q, axis=0), axis=1).sum())
+
+    @cached_property
+    def timed(self) -> TimedPlan:
+        """The plan with its time law, as `ScrewPlanExecutor` takes it."""
+        starts = self.arm.pose(self.plan.q[:1])
+        poses = np.concatenate([starts, self.plan.guides])
+        return time_plan(self.plan, poses, self.arm, self.speed)
+
+    @property
+    def times(self) -> Array:
+        """(m,) s from the start, PERIOD apart."""
+        return self._sampled[0]
+
+    @property
+    def q(self) -> Array:
+        """(m, n) rad or m, joint positions at `times`."""
+        return self._sampled[1]
+
+    @property
+    def v(self) -> Array:
+        """(m, n) joint velocities at `times`."""
+        return self._sampled[2]
+
+    @cached_property
+    def _sampled(self) -> tuple[Array, Array, Array]:
+        return self.timed.sampled(PERIOD)
+
+    def __str__(self) -> str:
+        turned = "".join(f", with {turn}" for turn in self.turned)
+        return (
+            f"{self.demonstration.name}{turned}: {len(self.plan.guides)} segments; "
+            f"{self.tightest} comes nearest to a limit, {self.margin:.1%} of its range away"
+        )
+
+
+def best_plan(
+    planner: CollisionFreePlanner,
+    arm: Arm,
+    demonstrations: Sequence[Demonstration],
+    X_WO: ArrayLike,
+    q_start: ArrayLike,
+    names: Sequence[str],
+    most: int = 5,
+    speed: TimeLimits | None = None,
+) -> RankedPlan:
+    """The plan with the largest margin that touches nothing.
+
+    Every turn of every demonstration is tried; where the approach is free and no screw leads to the
+    first guiding pose, the other ways to it are, too.
+
+    Args:
+        planner: for limits, reach and collisions.
+        arm: that is planned for.
+        demonstrations: D of them.
+        X_WO: (k, 4, 4) the objects.
+        q_start: (n,) rad or m.
+        names: of the k objects.
+        most: plans to return, the best one and its alternatives.
+        speed: how fast they are to be executed.
+
+    Raises:
+        ScenarioError: there is no plan; it says why.
+    """
+    X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
+    candidates = [
+        RankedPlan(
+            demonstration,
+            plan,
+            planner.planner.symmetries.named(demonstration, X_WO, plan.angles, names),
+            arm,
+            speed or TimeLimits(),
+        )
+        for demonstration, plan in _plans(planner.planner, demonstrations, X_WO, q_start)
+    ]
+    candidates.sort(key=lambda c: (-c.margin, c.length))
+    found: list[RankedPlan] = []
+    for first in range(0, len(candidates), CHECKED):
+        some = candidates[first : first + CHECKED]
+        poses = np.broadcast_to(X_WO, (len(some), *X_WO.shape))
+        touching = planner.checker.first_collisions([c.plan for c in some], poses).collides
+        found += [c for c, touches in zip(some, touching, strict=True) if not touches]
+        if len(found) >= most:
+            break
+    if not found:
+        outcomes = planner.all_outcomes(demonstrations, X_WO[None], q_start)[0]
+        raise ScenarioError(
+            f"no demonstration gives a plan there: "
+            f"{why_not(outcomes, demonstrations, X_WO, q_start, planner)}",
+            remedy="Choose another instance, or carry the run on with more demonstrations.",
+        )
+    return replace(found[0], alternatives=tuple(found[1:most]))
+
+
+def _plans(
+    planner: BatchPlanner, demonstrations: Sequence[Demonstration], X_WO: Array, q_start: Array
+) -> list[tuple[Demonstration, Plan]]:
+    """All plans that keep the limits: of the arm's own start, or if there is none of all."""
+    for others in (False, True) if planner.others else (False,):
+        outcomes = [
+            planner.variant_outcomes(d, X_WO[None], q_start, others=others) for d in demonstrations
+        ]
+        pairs = [(d, v) for d, found in enumerate(outcomes) for v in _successes(found)]
+        if pairs:
+            which, variant = np.array(pairs).T
+            poses = np.broadcast_to(X_WO, (len(pairs), *X_WO.shape))
+            plans = planner.plans(demonstrations, poses, q_start, which, variant)
+            return [(demonstrations[d], plan) for (d, _), plan in zip(pairs, plans, strict=True)]
+    return []
+
+
+def _successes(outcomes: Outcomes) -> list[int]:
+    found: list[int] = np.flatnonzero(outcomes.success[0]).tolist()
+    return found
