@@ -73,6 +73,8 @@ class Certificate:
         attempt: number of the last round's attempt to certify, from 1.
         delta_of_attempt: its share of delta.
         freedoms: symmetries that were taken for granted.
+        approach: how the arm comes to the first guiding pose: "screw", or "free" for any joint
+            motion.
         kept_position: m, and
         kept_rotation: rad, largest deviation of what was shown near the objects from what the
             demonstrations keep of it; None where it is not known.
@@ -98,6 +100,7 @@ class Certificate:
     attempt: int | None = None
     delta_of_attempt: float | None = None
     freedoms: tuple[Freedom, ...] = ()
+    approach: Literal["screw", "free"] = "screw"
     kept_position: float | None = None
     kept_rotation: float | None = None
     reason: str = ""
@@ -140,6 +143,10 @@ class Certificate:
             f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
             "in each region. To succeed is to have a plan within the joint limits of the robot's "
             f"model{collisions}."
+        ) + (
+            " The way to the first guiding pose may be any joint motion."
+            if self.approach == "free"
+            else ""
         )
 
     def _fidelity(self) -> tuple[str, ...]:
@@ -206,6 +213,7 @@ def certificate(
         strategy=bandit.name,
         guarantee=bandit.guarantee,
         freedoms=_freedoms(setup.scenario),
+        approach=setup.scenario.planner.approach,
         kept_position=_largest(finished, "position"),
         kept_rotation=_largest(finished, "rotation"),
         reason=finished.reason,

@@ -10,9 +10,10 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import ConstantValueSource
 
 from drake_screw.execution import Phase, ScrewPlanExecutor, TimedPlan, build_station, simulate
+from drake_screw.planning.approach import approached
 from drake_screw.robot import ObjectConfig, TableConfig
-from drake_screw.screws import pose
-from tests.execution.conftest import START
+from drake_screw.screws import pose, translation_distance
+from tests.execution.conftest import START, timed_plan
 
 POST = ObjectConfig("post", 0.03, 1.0)
 BOWL = ObjectConfig("bowl", 0.08, 0.06)
@@ -162,3 +163,19 @@ def test_the_executor_works_in_a_diagram_of_the_users_own(arm, timed) -> None:
     simulator.AdvanceTo(timed.duration + 0.1)
     status = executor.GetOutputPort("status").Eval(executor.GetMyContextFromRoot(root))
     assert status.phase is Phase.DONE
+
+
+def test_a_free_approach_is_followed_joint_by_joint(station, arm, plan, guides) -> None:
+    """From elsewhere; the end effector is nowhere near a screw on the way."""
+    away = np.array([-0.3, -0.2, 0.3, 0.2, -0.5, 0.3, 0.2])
+    q_start = START + away
+    timed = timed_plan(arm, approached(plan, q_start), guides)
+    assert [piece.screw for piece in timed.segments] == [False, True]
+    report = simulate(station, timed, FAR[None]).report
+    assert report.flawless, report
+    assert report.tracking.position < 8e-3
+    assert report.screws[1].position < 1.5e-3
+    assert report.final.position < 2e-3
+    points = [timed.at(t) for t in np.linspace(0.0, timed.segments[0].duration, 20)]
+    off = [translation_distance(arm.pose(p.q), timed.segments[0].pose(p.s)) for p in points]
+    assert max(off) > 0.01
