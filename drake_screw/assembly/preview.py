@@ -10,7 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from drake_screw.acquisition import UsableLessons, random_suggestion
+from drake_screw.assembly.freedoms import Freedom, freedoms
 from drake_screw.assembly.kept import kept, named_recordings, teacher_recordings
+from drake_screw.assembly.preview_parts import (
+    PreviewedArm,
+    PreviewedObject,
+    PreviewedSamples,
+    PreviewedTree,
+)
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import CertifyOrSplit
 from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
@@ -23,90 +30,6 @@ PROBE = 2_000
 
 
 @dataclass(frozen=True)
-class PreviewedArm:
-    """An arm: its model's name, its joints and end effector, and its reach in m."""
-
-    model: str
-    joints: tuple[str, ...]
-    end_effector: str
-    reach: float
-
-    def __str__(self) -> str:
-        return f"{self.model}, {len(self.joints)} joints, end effector '{self.end_effector}'"
-
-
-@dataclass(frozen=True)
-class PreviewedObject:
-    """Where an object may stand: least and greatest x and y in m and yaw in rad; z in m."""
-
-    name: str
-    x: tuple[float, float]
-    y: tuple[float, float]
-    yaw: tuple[float, float]
-    z: float
-
-    def __str__(self) -> str:
-        ranges = []
-        for axis, unit in (("x", "m"), ("y", "m"), ("yaw", "rad")):
-            lower, upper = getattr(self, axis)
-            numbers = f"{lower:g}..{upper:g}" if lower < upper else f"{lower:g}"
-            ranges.append(f"{axis} {numbers} {unit}")
-        return f"{self.name}: {', '.join(ranges)}, z {self.z:.4g} m"
-
-
-@dataclass(frozen=True)
-class PreviewedTree:
-    """Adaptive regions: free axes, the smallest cell's share of the area, its failure level."""
-
-    axes: int
-    smallest: float
-    level: float
-
-    def __str__(self) -> str:
-        axes = f"{self.axes} {'axis' if self.axes == 1 else 'axes'}"
-        return (
-            f"adaptive: the work area is halved along its {axes} wherever something fails, down to "
-            f"{self.smallest:.4g} of it; a cell that fails {self.level:g} of the time is noticed"
-        )
-
-
-@dataclass(frozen=True)
-class PreviewedSamples:
-    """Instances of a round, as far as a strategy says beforehand.
-
-    Attributes:
-        round: of a round in which nothing fails; None if it cannot be said.
-        region: of each region in such a round; None where regions are adaptive.
-        region_at_most: of a region before one is judged; None if there is no bound.
-    """
-
-    round: int | None = None
-    region: int | None = None
-    region_at_most: int | None = None
-
-    @property
-    def fixed(self) -> bool:
-        """Whether every round takes the same."""
-        return self.region is not None and self.region == self.region_at_most
-
-    def __str__(self) -> str:
-        if self.round is None:
-            return "as many a round as it takes"
-        if self.region is None:
-            return (
-                f"{self.round:,} in a first round where nothing fails, otherwise as many as it "
-                "takes"
-            )
-        if self.fixed:
-            return f"{self.region:,} in each region, {self.round:,} a round, every round"
-        return (
-            f"{self.round:,} in a first round where nothing fails ({self.region} in each region), "
-            f"some thousands where something does, never over {self.region_at_most:,} in a region "
-            "before one is flagged"
-        )
-
-
-@dataclass(frozen=True)
 class Preview:
     """The run that a scenario describes; as text it is what ``drake-screw check`` prints.
 
@@ -114,6 +37,8 @@ class Preview:
         scenario, description: its name, and its own words.
         robot: the arm that is planned for.
         objects: where they may stand.
+        freedoms: symmetries that are taken for granted.
+        approach: how the arm comes to the first guiding pose, "screw" or "free".
         regions: how many; None where they are adaptive.
         adaptive: how the work area is halved; None for a grid.
         beta, epsilon, delta: what is to be certified.
@@ -135,6 +60,8 @@ class Preview:
     description: str
     robot: PreviewedArm
     objects: tuple[PreviewedObject, ...]
+    freedoms: tuple[Freedom, ...]
+    approach: str
     regions: int | None
     adaptive: PreviewedTree | None
     beta: float
@@ -160,6 +87,9 @@ class Preview:
         yield "scenario", f"{self.scenario}: {self.description}".rstrip(": ")
         yield "robot", f"{self.robot}, reach {self.robot.reach:.2f} m"
         yield from (("object", str(item)) for item in self.objects)
+        yield from (("", f"  {freedom}") for freedom in self.freedoms)
+        if self.approach == "free":
+            yield "approach", "free: any joint motion to the first guiding pose"
         yield "regions", f"K = {self.regions}" if self.adaptive is None else str(self.adaptive)
         yield (
             "goal",
@@ -217,6 +147,8 @@ def preview(scenario: Scenario) -> Preview:
             setup.workcell.model_file.stem, arm.joint_names, arm.end_effector, chain.reach
         ),
         objects=_objects(setup),
+        freedoms=freedoms(scenario),
+        approach=scenario.planner.approach,
         regions=setup.regions.K if tree is None else None,
         adaptive=None if tree is None else PreviewedTree(tree.dimension, tree.smallest, tree.level),
         beta=goal.beta,

@@ -8,44 +8,10 @@ from typing import Any, Literal
 import numpy as np
 
 from drake_screw.acquisition import Finished, Status
+from drake_screw.assembly.freedoms import Freedom, freedoms
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits.spending import attempt_delta
-from drake_screw.planning.symmetry import TOOL
 from drake_screw.runs.html import certificate_html
-from drake_screw.scenario.schema import Scenario
-
-
-@dataclass(frozen=True, kw_only=True)
-class Freedom:
-    """A symmetry that a certificate counts on.
-
-    Attributes:
-        body: name of the object, or "tool".
-        axis: of its frame, about which it may be turned: "x", "y" or "z".
-        turns: how many turns in a full one are taken to be the same; "any" for a body of
-            revolution.
-        tried: how many of them are tried.
-    """
-
-    body: str
-    axis: Literal["x", "y", "z"]
-    turns: int | Literal["any"]
-    tried: int
-
-    def __str__(self) -> str:
-        if self.turns == "any":
-            held = "a body of revolution"
-            turned = f"by any angle, of which {self.tried} are tried"
-        else:
-            held = f"the same after each of {self.turns} equal turns"
-            turned = "by any of them"
-        return (
-            f"The {self.body} is taken to be {held} about its {self.axis} axis; what is done to it "
-            f"may be turned with it {turned}."
-            if self.body != TOOL
-            else f"The tool is taken to be {held} about its {self.axis} axis; the end effector may "
-            f"be turned with it {turned}."
-        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,28 +178,12 @@ def certificate(
         collisions_checked=setup.scenario.planner.collision,
         strategy=bandit.name,
         guarantee=bandit.guarantee,
-        freedoms=_freedoms(setup.scenario),
+        freedoms=freedoms(setup.scenario),
         approach=setup.scenario.planner.approach,
         kept_position=_largest(finished, "position"),
         kept_rotation=_largest(finished, "rotation"),
         reason=finished.reason,
         **shown,
-    )
-
-
-def _freedoms(scenario: Scenario) -> tuple[Freedom, ...]:
-    tool, tried = scenario.robot.tool, scenario.planner.turns
-    bodies = [(o.name, o.symmetry) for o in scenario.objects]
-    bodies += [(TOOL, None if tool is None else tool.symmetry)]
-    return tuple(
-        Freedom(
-            body=body,
-            axis=block.axis,
-            turns=block.turns,
-            tried=tried if block.turns == "any" else block.turns,
-        )
-        for body, block in bodies
-        if block is not None
     )
 
 

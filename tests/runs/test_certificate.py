@@ -19,16 +19,24 @@ EARLIER = SimpleNamespace(samples=48, attempted=False)
 ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 
 
-def stated_by(name, mu, rounds=(), collision=False, **options):
+def scenario_of(collision=False, objects=(), tool=None, approach="screw"):
+    return SimpleNamespace(
+        coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
+        planner=SimpleNamespace(collision=collision, approach=approach, turns=24),
+        objects=objects,
+        robot=SimpleNamespace(tool=tool),
+    )
+
+
+def stated_by(name, mu, rounds=(), scenario=None, **options):
     """Certificate of a run of three regions whose last round met failure probabilities mu."""
     bandit = make_strategy(name, GOAL, **options)
     attempt = 1 + sum(entry.attempted for entry in rounds)
     rng = np.random.default_rng(0)
     verdict = bandit.decide(lambda counts: rng.binomial(counts, mu), 3, attempt=attempt)
     instances = verdict.total_samples + sum(entry.samples for entry in rounds)
-    block = SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05)
     setup = SimpleNamespace(
-        scenario=SimpleNamespace(coverage=block, planner=SimpleNamespace(collision=collision)),
+        scenario=scenario or scenario_of(),
         bandit=bandit,
         tree=None,
         regions=SimpleNamespace(K=3),
@@ -65,9 +73,39 @@ def test_whether_collisions_count_is_said() -> None:
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0])
     assert not stated.collisions_checked
     assert "within the joint limits of the robot's model; collisions do not count." in text
-    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], collision=True)
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario_of(collision=True))
     assert stated.collisions_checked
     assert "that touches nothing." in text
+
+
+def test_it_says_what_was_taken_for_granted() -> None:
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0])
+    assert stated.freedoms == ()
+    assert "taken to be" not in text
+    assert "any joint motion" not in text
+    symmetry = SimpleNamespace(axis="z", turns="any")
+    objects = [
+        SimpleNamespace(name="bowl", symmetry=symmetry),
+        SimpleNamespace(name="mug", symmetry=None),
+        SimpleNamespace(name="box", symmetry=SimpleNamespace(axis="x", turns=4)),
+    ]
+    tool = SimpleNamespace(symmetry=symmetry)
+    scenario = scenario_of(objects=objects, tool=tool, approach="free")
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
+    assert [(f.body, f.axis, f.turns, f.tried) for f in stated.freedoms] == [
+        ("bowl", "z", "any", 24),
+        ("box", "x", 4, 4),
+        ("tool", "z", "any", 24),
+    ]
+    assert "The bowl is taken to be a body of revolution about its z axis" in text
+    assert "by any angle, of which 24 are tried." in text
+    assert "The box is taken to be the same after each of 4 equal turns about its x axis" in text
+    assert "the end effector may be turned with it" in text
+    assert "mug" not in text
+    assert "The way to the first guiding pose may be any joint motion." in text
+    record = plain(stated)
+    assert record["freedoms"][0] == {"body": "bowl", "axis": "z", "turns": "any", "tried": 24}
+    assert record["approach"] == "free"
 
 
 def test_the_papers_reading_is_labelled() -> None:
@@ -95,10 +133,7 @@ def test_a_run_without_a_certificate_says_what_it_has_shown() -> None:
 def test_a_run_that_never_began_states_nothing() -> None:
     bandit = make_strategy("eprocess", GOAL)
     setup = SimpleNamespace(
-        scenario=SimpleNamespace(
-            coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
-            planner=SimpleNamespace(collision=False),
-        ),
+        scenario=scenario_of(),
         bandit=bandit,
         tree=None,
         regions=SimpleNamespace(K=3),

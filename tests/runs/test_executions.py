@@ -27,7 +27,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 @pytest.fixture(scope="module")
 def run(tmp_path_factory) -> Path:
     """A run that has one demonstration by the simulated teacher, and one region."""
-    scenario = load_scenario("pouring", ["regions.grid={x: 1}"])
+    scenario = load_scenario("pouring", ["regions.grid={x: 1}", "objects.0.symmetry=null"])
     run = new_run(scenario, tmp_path_factory.mktemp("runs") / "run")
     at = np.array([[*PLACE, 0.0]])
     lesson = run.setup.teacher.demonstrate(

@@ -1,0 +1,89 @@
+"""What a scenario would do, piece by piece, in numbers and words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class PreviewedArm:
+    """An arm: its model's name, its joints and end effector, and its reach in m."""
+
+    model: str
+    joints: tuple[str, ...]
+    end_effector: str
+    reach: float
+
+    def __str__(self) -> str:
+        return f"{self.model}, {len(self.joints)} joints, end effector '{self.end_effector}'"
+
+
+@dataclass(frozen=True)
+class PreviewedObject:
+    """Where an object may stand: least and greatest x and y in m and yaw in rad; z in m."""
+
+    name: str
+    x: tuple[float, float]
+    y: tuple[float, float]
+    yaw: tuple[float, float]
+    z: float
+
+    def __str__(self) -> str:
+        ranges = []
+        for axis, unit in (("x", "m"), ("y", "m"), ("yaw", "rad")):
+            lower, upper = getattr(self, axis)
+            numbers = f"{lower:g}..{upper:g}" if lower < upper else f"{lower:g}"
+            ranges.append(f"{axis} {numbers} {unit}")
+        return f"{self.name}: {', '.join(ranges)}, z {self.z:.4g} m"
+
+
+@dataclass(frozen=True)
+class PreviewedTree:
+    """Adaptive regions: free axes, the smallest cell's share of the area, its failure level."""
+
+    axes: int
+    smallest: float
+    level: float
+
+    def __str__(self) -> str:
+        axes = f"{self.axes} {'axis' if self.axes == 1 else 'axes'}"
+        return (
+            f"adaptive: the work area is halved along its {axes} wherever something fails, down to "
+            f"{self.smallest:.4g} of it; a cell that fails {self.level:g} of the time is noticed"
+        )
+
+
+@dataclass(frozen=True)
+class PreviewedSamples:
+    """Instances of a round, as far as a strategy says beforehand.
+
+    Attributes:
+        round: of a round in which nothing fails; None if it cannot be said.
+        region: of each region in such a round; None where regions are adaptive.
+        region_at_most: of a region before one is judged; None if there is no bound.
+    """
+
+    round: int | None = None
+    region: int | None = None
+    region_at_most: int | None = None
+
+    @property
+    def fixed(self) -> bool:
+        """Whether every round takes the same."""
+        return self.region is not None and self.region == self.region_at_most
+
+    def __str__(self) -> str:
+        if self.round is None:
+            return "as many a round as it takes"
+        if self.region is None:
+            return (
+                f"{self.round:,} in a first round where nothing fails, otherwise as many as it "
+                "takes"
+            )
+        if self.fixed:
+            return f"{self.region:,} in each region, {self.round:,} a round, every round"
+        return (
+            f"{self.round:,} in a first round where nothing fails ({self.region} in each region), "
+            f"some thousands where something does, never over {self.region_at_most:,} in a region "
+            "before one is flagged"
+        )
