@@ -135,7 +135,11 @@ def test_wrong_input_ends_with_2_and_one_message(
             ["--instance", "bowl=0.9,0.3", "--output", "x", "--format", "csv"],
             "no export format 'csv'",
         ),
-        ("export", ["--instance", "5", "5", "--output", "x"], "no demonstration of this run gives"),
+        (
+            "export",
+            ["--instance", "5", "5", "--output", "x"],
+            "no demonstration gives a plan there",
+        ),
         ("export", ["--instance", "0.9", "0.3", "--output", "."], "cannot be written"),
         ("export", ["--instance", "0.9", "0.3", "--output", "no/x"], "cannot be written"),
         ("report", ["--json", "no/x.json"], "there is no folder 'no'"),

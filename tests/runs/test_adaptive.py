@@ -17,7 +17,7 @@ from drake_screw.runs.run import new_run, open_run
 from drake_screw.scenario.loader import load_scenario
 from tests.small_runs import two_objects
 
-QUICK = ["coverage.beta=0.7", "coverage.epsilon=0.15", "seed=1"]
+QUICK = ["objects.0.symmetry=null", "coverage.beta=0.7", "coverage.epsilon=0.15", "seed=1"]
 ADAPTIVE = [*QUICK, "regions={adaptive: {smallest: 0.0625}}"]
 
 

@@ -118,7 +118,7 @@ def test_an_instance_by_name_is_that_of_the_numbers(run, tmp_path) -> None:
 
 
 def test_an_export_where_there_is_no_plan_says_why(run, tmp_path) -> None:
-    with pytest.raises(ScenarioError, match="no demonstration of this run gives a plan there"):
+    with pytest.raises(ScenarioError, match="no demonstration gives a plan there"):
         write_trajectory(run, OUTSIDE, "npz", tmp_path / "plan.npz")
     assert list(tmp_path.iterdir()) == []
 

@@ -35,7 +35,12 @@ from drake_screw.scenario.loader import dump_scenario, load_scenario
 
 PLACES = ((0.75, 0.2), (0.8, 0.65), (0.95, 0.0))
 IIWA = [f"iiwa_joint_{i}" for i in range(1, 8)]
-QUICK = ["regions.grid={x: 1, y: 2}", "coverage.beta=0.6", "coverage.epsilon=0.1"]
+QUICK = [
+    "objects.0.symmetry=null",
+    "regions.grid={x: 1, y: 2}",
+    "coverage.beta=0.6",
+    "coverage.epsilon=0.1",
+]
 
 
 @pytest.fixture(scope="module")
@@ -230,7 +235,11 @@ def test_places_are_evaluated_with_the_other_robots_recordings(
     tabulate_outcomes(scenario, library, tmp_path / "places.csv", tmp_path / "outcomes.csv")
     rows = (tmp_path / "outcomes.csv").read_text().splitlines()
     assert len(rows) == 3
-    assert rows[0].endswith("demo_01,demo_02,demo_03")
+    names = ["demo_01", "demo_02", "demo_03"]
+    assert rows[0].split(",") == ["x", "y", *names, *(f"{name}:bowl" for name in names)]
+    turns = np.array([row.split(",")[-3:] for row in rows[1:]], dtype=float)
+    assert (np.abs(turns) <= np.pi).all()
+    assert len(np.unique(turns)) > 1
 
 
 def test_a_model_of_the_other_robot_that_changed_is_noticed(
