@@ -26,7 +26,11 @@ from tests.browser.conftest import Browser
 
 LEAST = 120.0
 """s. Patience with a command, which has to start, compile and evaluate."""
-QUICK = ["--set", "demonstrations.budget=2", "--set", "regions.grid={x: 2, y: 2}"]
+QUICK = [
+    *("--set", "objects.0.symmetry=null"),
+    *("--set", "demonstrations.budget=2"),
+    *("--set", "regions.grid={x: 2, y: 2}"),
+]
 HAND = "workcell/baxter/left_hand"
 
 
