@@ -10,7 +10,7 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from drake_screw.acquisition import Evaluator, Teacher, TreeEvaluator
+from drake_screw.acquisition import AskingRule, Evaluator, Teacher, TreeEvaluator
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
 from drake_screw.assembly.recorder import Learning, Recorder
@@ -39,6 +39,7 @@ class Parts(TypedDict, total=False):
     strategy: Callable[[Setup], Strategy] | None
     planner: Callable[[Setup], Planner] | None
     motion: Motion | None
+    ask: AskingRule | None
 
 
 class Setup:
@@ -53,6 +54,7 @@ class Setup:
         strategy: makes the bandit of a grid.
         planner: makes the planner that decides.
         motion: what a simulated teacher shows.
+        ask: chooses where the next demonstration is asked for.
 
     Attributes:
         scenario: the description.
@@ -213,6 +215,16 @@ class Setup:
         """
         passed_in = self._parts.get("motion")
         return passed_in or find("motions", str(self.scenario.teacher.motion))
+
+    @property
+    def ask(self) -> AskingRule:
+        """Chooses where the next demonstration is asked for.
+
+        Raises:
+            PluginError: the scenario names one that is not to be found.
+        """
+        passed_in = self._parts.get("ask")
+        return passed_in or find("asking_rules", self.scenario.demonstrations.ask)
 
     @cached_property
     def initial(self) -> int | tuple[Recording, ...]:
