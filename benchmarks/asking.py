@@ -2,18 +2,21 @@
 
 Runs of the tasks with every asking rule (`demonstrations.ask`), with the first demonstration at a
 random place or in the middle (`demonstrations.first`), given by a simulated teacher and, with
---demonstrations, out of recordings by every way to choose one (`teacher.choose`). All have the same
-seeds, so that means are compared run by run: "more" is how many demonstrations more a run takes
-than the same one in the first row of its table.
+--demonstrations, out of recordings by every way to choose one (`teacher.choose`); where that is by
+planning, the place hardly matters, so only the first rule is tried. All have the same seeds, and
+are compared run by run: "more" is how many demonstrations more a run takes than the same one in the
+first row of its table. A run without a certificate counts by the demonstrations it ended with.
 
     python benchmarks/asking.py [TASK ...] [--runs 300] [--demonstrations DIR [--model FILE]]
 
-DIR has a folder of recordings for each task; --rules names other rules, also your own.
+DIR has a folder of recordings for each task; --rules names other rules, also your own. With --table
+FILE finished runs are kept there, and a measurement that was interrupted goes on.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -26,14 +29,14 @@ import numpy as np
 from drake_screw.plugins import names
 from drake_screw.processes import share_out
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.studies.experiment import Experiment, StudyRun
+from drake_screw.studies.experiment import Experiment
 
 RULES, PLACES, CHOICES = names("asking_rules"), ("random", "middle"), ("nearest", "covers_most")
 
 
 @dataclass(frozen=True)
 class Way:
-    """A task, what is changed in its scenario, and the columns of its row."""
+    """A task, the columns of its row, and what is changed in its scenario for it."""
 
     task: str
     teacher: str
@@ -41,6 +44,18 @@ class Way:
     first: str
     choose: str
     changes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run; as text it is the key of its line in a table."""
+
+    way: Way
+    K: int
+    run: int
+
+    def __str__(self) -> str:
+        return " ".join((self.way.task, *self.way.changes, f"K={self.K}", f"run={self.run}"))
 
 
 def main() -> None:
@@ -56,19 +71,22 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=300)
     parser.add_argument("--workers", type=int)
     parser.add_argument("--set", nargs="+", default=[], metavar="KEY=VALUE", help="in all runs")
+    parser.add_argument("--table", type=Path, metavar="FILE", help="keep finished runs here")
     arguments = parser.parse_args()
     ways = list(_ways(arguments))
-    jobs = [(way, arguments.regions, run) for way in ways for run in range(arguments.runs)]
-    found: dict[Way, dict[int, StudyRun]] = {way: {} for way in ways}
-    shown = 0
-    for done, (place, run) in enumerate(
-        share_out(_carry_out, jobs, build=dict, workers=arguments.workers), start=1
-    ):
-        found[jobs[place][0]][run.run] = run
-        print(f"\r{done} of {len(jobs)} runs", end="", file=sys.stderr, flush=True)
-        while shown < len(ways) and len(found[ways[shown]]) == arguments.runs:
-            _show(ways, shown, found)
-            shown += 1
+    jobs = [Job(way, arguments.regions, i) for way in ways for i in range(arguments.runs)]
+    found = _kept(arguments.table)
+    missing = [job for job in jobs if str(job) not in found]
+    shown = _show(ways, 0, arguments, found)
+    for place, answer in share_out(_carry_out, missing, build=dict, workers=arguments.workers):
+        found[str(missing[place])] = answer
+        if arguments.table is not None:
+            with arguments.table.open("a", newline="") as table:
+                csv.writer(table).writerow((str(missing[place]), *answer))
+        if sys.stderr.isatty():
+            done = sum(str(job) in found for job in jobs)
+            print(f"\r{done} of {len(jobs)} runs\r", end="", file=sys.stderr, flush=True)
+        shown = _show(ways, shown, arguments, found)
 
 
 def _ways(arguments: argparse.Namespace) -> Iterator[Way]:
@@ -86,15 +104,24 @@ def _ways(arguments: argparse.Namespace) -> Iterator[Way]:
                 for choose in arguments.choose
             ]
         for teacher, choose, changes in chosen:
+            rules = arguments.rules[:1] if choose == "covers_most" else arguments.rules
             for first in arguments.first:
-                for rule in arguments.rules:
+                for rule in rules:
                     asked = (f"demonstrations.ask={rule}", f"demonstrations.first={first}")
                     yield Way(task, teacher, rule, first, choose, (*changes, *asked, *always))
 
 
-def _carry_out(_: dict[str, str], job: tuple[Way, int, int]) -> StudyRun:
-    way, K, run = job
-    return _experiment(way.task, way.changes).run(K, run)
+def _kept(table: Path | None) -> dict[str, tuple[int, bool]]:
+    """Demonstrations and whether certified, of the runs in a table."""
+    if table is None or not table.exists():
+        return {}
+    with table.open(newline="") as lines:
+        return {key: (int(number), text == "True") for key, number, text in csv.reader(lines)}
+
+
+def _carry_out(_: dict[str, str], job: Job) -> tuple[int, bool]:
+    run = _experiment(job.way.task, job.way.changes).run(job.K, job.run)
+    return run.demonstrations, run.certified
 
 
 @cache
@@ -102,24 +129,34 @@ def _experiment(task: str, changes: tuple[str, ...]) -> Experiment:
     return Experiment(load_scenario(task, changes))
 
 
-def _show(ways: list[Way], row: int, found: dict[Way, dict[int, StudyRun]]) -> None:
-    way = ways[row]
-    table = [other for other in ways if (other.task, other.teacher) == (way.task, way.teacher)]
-    runs, base = (
-        np.array([found[w][i].demonstrations for i in sorted(found[w])]) for w in (way, table[0])
-    )
-    print("\r", end="", file=sys.stderr, flush=True)
-    if way == table[0]:
-        print(f"\n{way.task}, {way.teacher} teacher, {len(runs)} runs\n")
-        print("| ask | first | choose | demonstrations | more | not certified | distribution |")
-        print("|---|---|---|---|---|---|---|")
-    without = sum(not run.certified for run in found[way].values())
-    shares = ", ".join(
-        f"{k}: {100 * n / len(runs):.3g} %" for k, n in sorted(Counter(runs.tolist()).items())
-    )
-    more = "" if way == table[0] else _mean(runs - base, "+.2f")
-    cells = (way.ask, way.first, way.choose, _mean(runs, ".2f"), more, without, shares)
-    print(f"| {' | '.join(map(str, cells))} |", flush=True)
+def _show(
+    ways: list[Way],
+    shown: int,
+    arguments: argparse.Namespace,
+    found: dict[str, tuple[int, bool]],
+) -> int:
+    """Print the rows that are whole, after the first `shown`; returns how many are shown then."""
+
+    def runs(way: Way) -> np.ndarray:
+        keys = [str(Job(way, arguments.regions, i)) for i in range(arguments.runs)]
+        return np.array([found[key] for key in keys if key in found]).reshape(-1, 2)
+
+    while shown < len(ways) and len(runs(ways[shown])) == arguments.runs:
+        way = ways[shown]
+        base = next(w for w in ways if (w.task, w.teacher) == (way.task, way.teacher))
+        number, certified = runs(way).T
+        if way == base:
+            print(f"\n{way.task}, {way.teacher} teacher, {len(number)} runs\n")
+            print("| ask | first | choose | demonstrations | more | not certified | distribution |")
+            print("|---|---|---|---|---|---|---|")
+        more = "" if way == base else _mean(number - runs(base)[:, 0], "+.2f")
+        counts = sorted(Counter(number.tolist()).items())
+        shares = ", ".join(f"{k}: {100 * n / len(number):.3g} %" for k, n in counts)
+        without = np.count_nonzero(certified == 0)
+        cells = (way.ask, way.first, way.choose, _mean(number, ".2f"), more, without, shares)
+        print(f"| {' | '.join(map(str, cells))} |", flush=True)
+        shown += 1
+    return shown
 
 
 def _mean(values: np.ndarray, form: str) -> str:
