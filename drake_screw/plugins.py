@@ -19,7 +19,9 @@ from typing import Any, Literal
 
 from drake_screw.errors import PluginError, nearest, suggestion
 
-Group = Literal["strategies", "motions", "teachers", "recording_formats", "exporters"]
+Group = Literal[
+    "strategies", "asking_rules", "motions", "teachers", "recording_formats", "exporters"
+]
 
 BUILT_IN: Mapping[Group, Mapping[str, str]] = {
     "strategies": {
@@ -32,6 +34,11 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
         "lucb": "drake_screw.bandits.lucb:Lucb",
         "ucb": "drake_screw.bandits.ucb:Ucb",
         "median_elimination": "drake_screw.bandits.median_elimination:MedianElimination",
+    },
+    "asking_rules": {
+        "earliest": "drake_screw.acquisition.asking:earliest",
+        "densest": "drake_screw.acquisition.asking:densest",
+        "densest_anywhere": "drake_screw.acquisition.asking:densest_anywhere",
     },
     "motions": {
         "pouring": "drake_screw.acquisition.simulated.motions:pouring",
@@ -56,6 +63,7 @@ REFERENCE = r"^[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*(\.[A-Za-z_]\w*)*$"
 
 _SINGULAR: Mapping[Group, str] = {
     "strategies": "strategy",
+    "asking_rules": "asking rule",
     "motions": "motion",
     "teachers": "teacher",
     "recording_formats": "recording format",

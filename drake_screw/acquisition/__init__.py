@@ -1,5 +1,6 @@
 """The self-evaluation loop and the teachers."""
 
+from drake_screw.acquisition.asking import AskingRule
 from drake_screw.acquisition.events import (
     DemonstrationAdded,
     DemonstrationRequested,
@@ -15,18 +16,20 @@ from drake_screw.acquisition.events import (
 from drake_screw.acquisition.grid_evaluator import Evaluator
 from drake_screw.acquisition.loop import acquire
 from drake_screw.acquisition.recorded_teacher import RecordedTeacher
-from drake_screw.acquisition.suggestion import random_suggestion, suggest
+from drake_screw.acquisition.suggestion import First, random_suggestion, suggest
 from drake_screw.acquisition.teacher import Lesson, Teacher
 from drake_screw.acquisition.tree_evaluator import TreeEvaluator
 from drake_screw.acquisition.usable_lessons import UsableLessons
 
 __all__ = [
+    "AskingRule",
     "DemonstrationAdded",
     "DemonstrationRequested",
     "Evaluation",
     "Evaluator",
     "Event",
     "Finished",
+    "First",
     "Lesson",
     "RecordedTeacher",
     "RegionsEvaluated",

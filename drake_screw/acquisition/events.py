@@ -64,12 +64,15 @@ class Suggestion:
         segment: screw segment, from 0, in which the best attempt there failed; None where there
             was no attempt (an initial demonstration).
         regions: what `region` counts; None for the run's own partition.
+        failing: (M, k, 3) instances that fail with the demonstrations in hand, drawn evenly from
+            all of the work area where it fails; None where a suggestion is read from a file.
     """
 
     region: int
     x_y_yaw: Array
     segment: int | None = None
     regions: Regions | None = None
+    failing: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)

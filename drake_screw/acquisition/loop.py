@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from drake_screw.acquisition.asking import AskingRule, earliest
 from drake_screw.acquisition.events import (
     DemonstrationAdded,
     DemonstrationRequested,
@@ -22,7 +23,7 @@ from drake_screw.acquisition.events import (
     Status,
     Suggestion,
 )
-from drake_screw.acquisition.suggestion import random_suggestion, suggest
+from drake_screw.acquisition.suggestion import First, initial_suggestion, suggest
 from drake_screw.acquisition.teacher import Teacher
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
@@ -52,6 +53,8 @@ def acquire(
     initial: int | Sequence[Recording],
     budget: int,
     seed: int,
+    ask: AskingRule = earliest,
+    first: First = "random",
 ) -> Iterator[Event]:
     """Acquire demonstrations until every region is covered, or as far as it goes.
 
@@ -60,9 +63,11 @@ def acquire(
         teacher: gives demonstrations.
         learn: turns a recording into a demonstration.
         regions: the bandit's arms; where they refine themselves, what they start from.
-        initial: recordings to start from, or how many to ask for at random places.
+        initial: recordings to start from, or how many to ask for before the first round.
         budget: most demonstrations in total.
         seed: of the run; with the arguments it determines everything.
+        ask: chooses the failed instance at which the next one is asked for.
+        first: where the first of the initial ones is asked for; the others are at random places.
 
     Yields:
         Events; the last is `Finished`.
@@ -70,7 +75,7 @@ def acquire(
     acquired = _Acquired((), ())
     if isinstance(initial, int):
         for number in range(initial):
-            place = initial_place(regions, seed, number)
+            place = initial_place(regions, seed, number, first)
             added, remark = yield from _ask(teacher, learn, acquired, 0, (place,), seed)
             if added is None:
                 yield _finished(f"no initial demonstration: {remark}", None, acquired)
@@ -89,7 +94,7 @@ def acquire(
         places = (
             ()
             if verdict.certified
-            else suggest(evaluation, verdict.region, ties, count=TRIES, regions=here)
+            else suggest(evaluation, verdict.region, here, ties, rule=ask, count=TRIES)
         )
         yield RoundFinished(
             round,
@@ -113,9 +118,9 @@ def acquire(
         acquired = added
 
 
-def initial_place(regions: Regions, seed: int, number: int) -> Suggestion:
+def initial_place(regions: Regions, seed: int, number: int, first: First) -> Suggestion:
     """Where initial demonstration `number`, from 0, is asked for."""
-    return random_suggestion(regions, _rng(seed, number, _PLACE))
+    return initial_suggestion(regions, _rng(seed, number, _PLACE), number, first)
 
 
 def _ask(

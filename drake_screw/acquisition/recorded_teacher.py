@@ -16,15 +16,23 @@ from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 
 
-class Foreign(Protocol):
-    """What a teacher has to ask about recordings made on another robot."""
+class TriedOut(Protocol):
+    """What a teacher can find out about recordings by planning with them."""
 
     def seen(self, recording: Recording) -> Array:
         """Where its objects stood, X_WO (k, 4, 4), in the world that requests refer to."""
         ...
 
     def works(self, recordings: Sequence[Recording], x_y_yaw: Array) -> NDArray[np.bool_]:
-        """Whether each gives a plan at a task instance (k, 3) with the arm that is planned for."""
+        """Whether each of R gives a plan, with the arm that is planned for.
+
+        Args:
+            recordings: R of them.
+            x_y_yaw: (M, k, 3) task instances.
+
+        Returns:
+            (M, R).
+        """
         ...
 
 
@@ -36,15 +44,21 @@ class RecordedTeacher:
     cannot be taken for granted, wherever the objects stood. So instead of those of the suggested
     region, the ones that do work at the suggested place come first.
 
+    Or it tries them out, and gives the one with which most of the instances succeed that fail so
+    far, all over the work area; of several the nearest. Where a suggestion has no such instances
+    with it, or none of them succeeds with any, it is the nearest after all.
+
     Attributes:
         recordings: the library; a place outside the work area belongs to the nearest region.
         regions: the partition that requests refer to, unless they bring their own.
         foreign: what is known of recordings made on another robot; None where they were not.
+        covering: what it tries them out by; None where it does not.
     """
 
     recordings: tuple[Recording, ...]
     regions: Regions
-    foreign: Foreign | None = None
+    foreign: TriedOut | None = None
+    covering: TriedOut | None = None
 
     def demonstrate(
         self,
@@ -62,6 +76,14 @@ class RecordedTeacher:
         there = [r.X_WO if self.foreign is None else self.foreign.seen(r) for r in left]
         places = self.regions.area.x_y_yaw(np.stack(there))
         away = np.linalg.norm(places[..., :2] - suggestion.x_y_yaw[..., :2], axis=-1).sum(axis=-1)
+        gained = self._gained(left, used, suggestion)
+        if gained.any():
+            chosen = int(np.lexsort((away, -gained))[0])
+            return Lesson(
+                left[chosen],
+                f"the unused recording that solves most of what fails, {gained[chosen]:.0%} of "
+                f"it; {away[chosen] * 100:.0f} cm from the suggestion",
+            )
         if self.foreign is None:
             fits = (suggestion.regions or self.regions).index(places) == suggestion.region
             one, none = (
@@ -69,7 +91,7 @@ class RecordedTeacher:
                 f"region {suggestion.region} has no unused recording; the nearest at all",
             )
         else:
-            fits = self.foreign.works(left, suggestion.x_y_yaw)
+            fits = self.foreign.works(left, suggestion.x_y_yaw[None])[0]
             one, none = (
                 "of the unused recordings that work there, the nearest",
                 "no unused recording works there; the nearest at all",
@@ -77,6 +99,17 @@ class RecordedTeacher:
         chosen = int(np.lexsort((away, ~fits))[0])
         which = one if fits[chosen] else none
         return Lesson(left[chosen], f"{which}, {away[chosen] * 100:.0f} cm from the suggestion")
+
+    def _gained(
+        self, left: Sequence[Recording], used: Sequence[Recording], suggestion: Suggestion
+    ) -> Array:
+        """(R,) part of what fails that succeeds with each recording; 0 where it is not asked."""
+        failing = suggestion.failing
+        if self.covering is None or failing is None or len(failing) == 0:
+            return np.zeros(len(left))
+        works = self.covering.works([*left, *used], failing)
+        fails = ~works[:, len(left) :].any(axis=1)
+        return np.count_nonzero(works[fails, : len(left)], axis=0) / max(np.count_nonzero(fails), 1)
 
 
 def _key(recording: Recording) -> tuple[str, bytes]:

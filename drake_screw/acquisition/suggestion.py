@@ -2,44 +2,58 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
+from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from drake_screw.acquisition.asking import AskingRule, earliest, evenly
 from drake_screw.acquisition.events import Evaluation, Suggestion
+from drake_screw.errors import PluginError
 from drake_screw.tasks import Regions
+
+First = Literal["random", "middle"]
+"""Where the first demonstration is asked for: anywhere in the work area, or in its middle."""
+
+FAILING = 256
+"""Failed instances that a suggestion has with it."""
 
 
 def suggest(
     evaluation: Evaluation,
     region: int,
+    regions: Regions,
     rng: np.random.Generator,
     *,
+    rule: AskingRule = earliest,
     count: int = 1,
-    regions: Regions | None = None,
 ) -> tuple[Suggestion, ...]:
-    """Failed instances of a region, the one that failed earliest first.
-
-    An instance counts by its best attempt: the furthest screw segment that any demonstration in
-    hand got to. Those that got least far come first, in random order among equals (the paper's
-    heuristic: there the demonstrations in hand help least).
+    """Failed instances at which to ask for a demonstration, the best one first.
 
     Args:
         evaluation: of the round.
         region: the weakest region.
+        regions: what `evaluation.region` counts; goes into the suggestions.
         rng: settles ties.
+        rule: chooses.
         count: how many at most.
-        regions: goes into the suggestions.
+
+    Raises:
+        PluginError: the rule answers what are no rows of failed instances.
     """
-    failed = np.flatnonzero(evaluation.failed & (evaluation.region == region))
-    segment = evaluation.outcomes[failed].furthest_segment
-    order = np.lexsort((rng.random(len(failed)), segment))[:count]
+    rows = _checked(rule, np.asarray(rule(evaluation, region, regions, rng)), evaluation)[:count]
+    failing = evaluation.x_y_yaw[evenly(evaluation, regions, rng, FAILING)]
+    segment = evaluation.outcomes[rows].furthest_segment
     return tuple(
         Suggestion(
-            region,
-            evaluation.x_y_yaw[failed[i]],
+            int(evaluation.region[row]),
+            evaluation.x_y_yaw[row],
             int(segment[i]) if segment[i] >= 0 else None,
             regions,
+            failing,
         )
-        for i in order
+        for i, row in enumerate(rows.tolist())
     )
 
 
@@ -47,3 +61,44 @@ def random_suggestion(regions: Regions, rng: np.random.Generator) -> Suggestion:
     """An instance drawn uniformly from the whole work area."""
     x_y_yaw = rng.uniform(regions.area.lower, regions.area.upper)
     return Suggestion(int(regions.index(x_y_yaw)), x_y_yaw)
+
+
+def initial_suggestion(
+    regions: Regions, rng: np.random.Generator, number: int, first: First = "random"
+) -> Suggestion:
+    """Where an initial demonstration is asked for. What may fail is the whole work area.
+
+    Args:
+        regions: the run's partition.
+        rng: draws the place.
+        number: of the demonstration, from 0.
+        first: where number 0 is asked for; the others are at random places.
+    """
+    lower, upper = regions.area.lower, regions.area.upper
+    place = random_suggestion(regions, rng)
+    if first == "middle" and number == 0:
+        x_y_yaw = (lower + upper) / 2.0
+        place = Suggestion(int(regions.index(x_y_yaw)), x_y_yaw)
+    return replace(place, failing=rng.uniform(lower, upper, (FAILING, *lower.shape)))
+
+
+def _checked(rule: AskingRule, rows: NDArray[Any], evaluation: Evaluation) -> NDArray[np.int64]:
+    name = getattr(rule, "__qualname__", type(rule).__qualname__)
+    if rows.ndim != 1 or (rows.size and not np.issubdtype(rows.dtype, np.integer)):
+        found = f"an array {rows.dtype} of shape {rows.shape}"
+        raise PluginError(
+            f"asking rule '{name}': expected rows of the evaluation, (M,) int, found {found}",
+            remedy="Answer np.flatnonzero(evaluation.failed), sorted or chosen from.",
+        )
+    N = len(evaluation.region)
+    rows = rows.astype(np.int64)
+    exists = (rows >= 0) & (rows < N)
+    good = exists & evaluation.failed[np.where(exists, rows, 0)] if rows.size else exists
+    if not good.all():
+        wrong = int(np.argmin(good))
+        raise PluginError(
+            f"asking rule '{name}': instance {rows[wrong]} of {N} "
+            f"{'succeeds' if exists[wrong] else 'does not exist'}",
+            remedy="Ask only where evaluation.failed is true.",
+        )
+    return rows

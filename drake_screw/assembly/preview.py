@@ -49,6 +49,8 @@ class Preview:
         kept: a line for each recording that the scenario names: how faithfully it is kept.
         recorded_on: the arm that recordings are of, where that is another.
         recordings_named: whether the scenario names recordings.
+        ask: the rule by which the next demonstration is asked for.
+        first: where the first one is, "random" or "middle"; None where it is not asked for so.
         budget: most demonstrations in total.
         farthest_corner: m, of the work area from the shoulder.
         samples: instances of a round.
@@ -75,6 +77,8 @@ class Preview:
     kept: tuple[str, ...]
     recorded_on: PreviewedArm | None
     recordings_named: bool
+    ask: str
+    first: str | None
     budget: int
     farthest_corner: float
     samples: PreviewedSamples
@@ -102,6 +106,8 @@ class Preview:
         if self.recorded_on is not None:
             none = "none yet; recordings named in the scenario would be "
             yield "recorded", f"{'' if self.recordings_named else none}on {self.recorded_on}"
+        first = {"random": "; at a random place first", "middle": "; in the middle first"}
+        yield "asks", self.ask + first.get(self.first or "", "")
         yield "budget", f"{self.budget} demonstrations"
         if self.farthest_corner > self.robot.reach:
             yield (
@@ -133,7 +139,7 @@ def preview(scenario: Scenario) -> Preview:
     """
     setup = Setup(scenario)
     arm, goal, tree, block = setup.workcell.arm, setup.goal, setup.tree, scenario.teacher
-    recordings = teacher_recordings(setup)
+    asking, recordings = scenario.demonstrations, teacher_recordings(setup)
     chain, recorder = arm.screw_chain(), setup.recorder
     other = None
     if recorder.model_file is not None:
@@ -161,9 +167,10 @@ def preview(scenario: Scenario) -> Preview:
         recordings=None if recordings is None else len(recordings),
         kept=kept(setup, named_recordings(setup)),
         recorded_on=other,
-        recordings_named=recordings is not None
-        or not isinstance(scenario.demonstrations.initial, int),
-        budget=scenario.demonstrations.budget,
+        recordings_named=recordings is not None or not isinstance(asking.initial, int),
+        ask=asking.ask,
+        first=asking.first if asking.initial and isinstance(asking.initial, int) else None,
+        budget=asking.budget,
         farthest_corner=_farthest_corner(setup),
         samples=_samples(setup),
         plans_per_second=_plans_per_second(setup),

@@ -20,6 +20,7 @@ from drake_screw.demonstrations import (
     Demonstration,
     FaithfulConfig,
     Look,
+    NoMotionKept,
     Recording,
     SegmentationConfig,
     look_at,
@@ -211,11 +212,11 @@ class Recorder:
 
 
 @dataclass(frozen=True)
-class ForeignRecordings:
-    """What a teacher asks about recordings made on another robot; see `acquisition.Foreign`.
+class TriedRecordings:
+    """What a teacher finds out about recordings by planning with them; see `TriedOut`.
 
     Attributes:
-        recorder: of that robot.
+        recorder: of the robot they were made on.
         learning: how they become demonstrations.
         planner: of the arm that is planned for.
         start: (n,) rad or m, where its plans start.
@@ -225,21 +226,35 @@ class ForeignRecordings:
     learning: Learning
     planner: Planner
     start: Array
-    _learned: dict[tuple[Path | None, str], Demonstration] = field(default_factory=dict, repr=False)
+    _learned: dict[tuple[Path | None, str], Demonstration | None] = field(
+        default_factory=dict, repr=False
+    )
 
     def seen(self, recording: Recording) -> Array:
         """See `Recorder.seen`."""
         return self.recorder.seen(recording)
 
     def works(self, recordings: Sequence[Recording], x_y_yaw: Array) -> NDArray[np.bool_]:
-        """Whether each gives a plan at a task instance (k, 3)."""
-        for recording in recordings:
-            if _key(recording) not in self._learned:
-                learned = self.recorder.learn(recording, self.learning)
-                self._learned[_key(recording)] = learned
-        demonstrations = [self._learned[_key(recording)] for recording in recordings]
-        X_WO = self.recorder.area.X_WO(x_y_yaw)[None]
-        return self.planner.all_outcomes(demonstrations, X_WO, self.start).success[0]
+        """(M, R) whether each of R gives a plan at task instances (M, k, 3).
+
+        One of which no motion would be kept gives none.
+        """
+        learned = [self._learn(recording) for recording in recordings]
+        known = [demonstration for demonstration in learned if demonstration is not None]
+        works = np.zeros((len(x_y_yaw), len(learned)), dtype=bool)
+        works[:, [demonstration is not None for demonstration in learned]] = (
+            self.planner.all_outcomes(known, self.recorder.area.X_WO(x_y_yaw), self.start).success
+        )
+        return works
+
+    def _learn(self, recording: Recording) -> Demonstration | None:
+        key = _key(recording)
+        if key not in self._learned:
+            try:
+                self._learned[key] = self.recorder.learn(recording, self.learning)
+            except NoMotionKept:
+                self._learned[key] = None
+        return self._learned[key]
 
 
 def _moved(learned: Demonstration, X: Array) -> Demonstration:

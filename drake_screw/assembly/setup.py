@@ -10,7 +10,7 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from drake_screw.acquisition import Evaluator, Teacher, TreeEvaluator
+from drake_screw.acquisition import AskingRule, Evaluator, Teacher, TreeEvaluator
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
 from drake_screw.assembly.placing import InstanceLike, placed
@@ -33,6 +33,7 @@ class Parts(TypedDict, total=False):
     strategy: Callable[[Setup], Strategy] | None
     planner: Callable[[Setup], Planner] | None
     motion: Motion | None
+    ask: AskingRule | None
 
 
 class Setup(PlanningSetup):
@@ -47,6 +48,7 @@ class Setup(PlanningSetup):
         strategy: makes the bandit of a grid.
         planner: makes the planner that decides.
         motion: what a simulated teacher shows.
+        ask: chooses where the next demonstration is asked for.
 
     Attributes:
         scenario: the description.
@@ -142,6 +144,16 @@ class Setup(PlanningSetup):
         """
         passed_in = self._parts.get("motion")
         return passed_in or find("motions", str(self.scenario.teacher.motion))
+
+    @property
+    def ask(self) -> AskingRule:
+        """Chooses where the next demonstration is asked for.
+
+        Raises:
+            PluginError: the scenario names one that is not to be found.
+        """
+        passed_in = self._parts.get("ask")
+        return passed_in or find("asking_rules", self.scenario.demonstrations.ask)
 
     @cached_property
     def initial(self) -> int | tuple[Recording, ...]:

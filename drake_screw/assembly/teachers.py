@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from drake_screw.acquisition import RecordedTeacher, Teacher
 from drake_screw.acquisition.simulated import SimulatedTeacher
-from drake_screw.assembly.recorder import ForeignRecordings
+from drake_screw.assembly.recorder import TriedRecordings
 from drake_screw.assembly.setup import Setup
 from drake_screw.errors import ScenarioError
 
@@ -22,10 +22,13 @@ def recorded(setup: Setup) -> Teacher:
     """
     block, recorder = setup.scenario.teacher, setup.recorder
     assert block.folder is not None
-    foreign = None
-    if recorder.robot is not None:
-        foreign = ForeignRecordings(recorder, setup.learning, setup.planner, setup.workcell.start)
-    return RecordedTeacher(recorder.library(block.folder, block.format), setup.regions, foreign)
+    tried = TriedRecordings(recorder, setup.learning, setup.planner, setup.workcell.start)
+    return RecordedTeacher(
+        recorder.library(block.folder, block.format),
+        setup.regions,
+        foreign=None if recorder.robot is None else tried,
+        covering=tried if block.choose == "covers_most" else None,
+    )
 
 
 def interactive(setup: Setup) -> Teacher:

@@ -71,14 +71,15 @@ class RunReader:
         Raises:
             RunDirectoryError: what is stored of it is not whole.
         """
-        record, wanted = self.directory.record, self.setup.scenario.demonstrations.initial
+        record, block = self.directory.record, self.setup.scenario.demonstrations
+        wanted = block.initial
         given = not isinstance(wanted, int)
         initial = len(wanted) if isinstance(wanted, tuple) else wanted
         known = len(record.demonstrations)
         if given and known < initial:
             raise self._lacks("the initial demonstrations")
         for number in range(0 if given else min(initial, known)):
-            place = initial_place(self.setup.regions, record.seed, number)
+            place = initial_place(self.setup.regions, record.seed, number, block.first)
             yield from self._lesson(0, number, place)
         verdict = None
         for round in range(self.rounds):

@@ -59,6 +59,8 @@ def carry_on(reader: RunReader, progress: Progress) -> Iterator[Event]:
         initial=initial,
         budget=scenario.demonstrations.budget,
         seed=scenario.seed,
+        ask=setup.ask,
+        first=scenario.demonstrations.first,
     )
 
 

@@ -207,7 +207,7 @@ def new_run(scenario: Scenario, output: PathLike | None = None, **parts: Unpack[
         DrakeScrewError: anything it names cannot be used; nothing is written then.
     """
     setup = Setup(scenario, **parts)
-    for part in (setup.strategy, setup.bandit, setup.teacher, setup.initial):
+    for part in (setup.strategy, setup.bandit, setup.teacher, setup.ask, setup.initial):
         assert part is not None
     goal = scenario.coverage
     record = RunRecord(

@@ -26,7 +26,12 @@ from drake_screw.scenario.yaml_marks import (
 )
 from drake_screw.typing import PathLike
 
-_BEFORE_IT_WAS_WRITTEN = {("segmentation", "method"): "published"}
+_BEFORE_IT_WAS_WRITTEN = {
+    ("segmentation", "method"): "published",
+    ("demonstrations", "ask"): "earliest",
+    ("demonstrations", "first"): "random",
+    ("teacher", "choose"): "nearest",
+}
 """What earlier versions did that had no such key."""
 
 

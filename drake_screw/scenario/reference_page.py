@@ -97,9 +97,12 @@ _RULES = """\
 - `demonstrations.budget` is at least the number of initial demonstrations.
 - A `simulated` teacher needs `motion` and has no `folder`; a `recorded` one needs `folder` and has
   no `motion`; an `interactive` one may have a `folder` and has no `motion`.
-- `teacher.kind`, `teacher.motion` and `coverage.strategy` may also name a part of your own, as
-  `package.module:Object`, or one that an installed package declares as an entry point. Only such a
-  teacher may have further keys: it is given them as options, texts as they are written.
+- `demonstrations.first` says nothing where `demonstrations.initial` is 0 or a list of recordings;
+  `teacher.choose` is for a `recorded` teacher.
+- `teacher.kind`, `teacher.motion`, `coverage.strategy` and `demonstrations.ask` may also name a
+  part of your own, as `package.module:Object`, or one that an installed package declares as an
+  entry point. Only such a teacher may have further keys: it is given them as options, texts as they
+  are written.
 - Object names differ; the range of a yaw is no wider than a full turn; the work area is within
   reach of the arm.
 """

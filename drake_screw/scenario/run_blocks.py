@@ -14,6 +14,7 @@ from drake_screw.scenario.block import Block, Problem
 from drake_screw.scenario.values import (
     RADIANS,
     Folder,
+    OneOf,
     Option,
     Options,
     PartOf,
@@ -75,8 +76,15 @@ class DemonstrationsBlock(Block):
         Annotated[int, Field(ge=0), Tag("count")] | Annotated[tuple[Folder, ...], Tag("folders")],
         Discriminator(lambda value: "folders" if isinstance(value, tuple) else "count"),
     ] = 1
-    """how many demonstrations to draw at random places before the first round, or a list of
-    recording folders, relative to the scenario file"""
+    """how many demonstrations to ask for before the first round, or a list of recording folders,
+    relative to the scenario file"""
+    first: Annotated[Literal["random", "middle"], OneOf(("random", "middle"))] = "random"
+    """where the first of the initial demonstrations is asked for: at a random place, or in the
+    middle of the work area; the others are at random places"""
+    ask: Annotated[str, PartOf("asking_rules")] = "earliest"
+    """chooses the failed instance at which the next demonstration is asked for: in the weakest
+    region, the one where the best attempt got least far (earliest) or where most fails around it
+    (densest), or in any region, where most fails around it (densest_anywhere)"""
     budget: Annotated[int, Field(ge=1)] = 12
     """most demonstrations in total, the initial ones included"""
     objects: tuple[str, ...] = ()
@@ -118,6 +126,9 @@ class TeacherBlock(Block):
 
     format: Annotated[str, PartOf("recording_formats")] = "folder"
     """format of recordings: in `folder` of a recorded teacher, and in `demonstrations.initial`"""
+    choose: Annotated[str, OneOf(("nearest", "covers_most"))] = "nearest"
+    """which of its unused recordings a recorded teacher gives: the nearest one of the region that
+    is asked for, or the one that, by planning, solves most of the instances that fail so far"""
 
     @property
     def options(self) -> dict[str, Option]:

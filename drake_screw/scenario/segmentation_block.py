@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
+from pydantic import Field, model_validator
 
 from drake_screw.demonstrations import FaithfulConfig, SegmentationConfig
-from drake_screw.errors import suggestion
-from drake_screw.scenario.block import Block, Problem, refusal
-from drake_screw.scenario.values import METRES, Positive
+from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.values import METRES, OneOf, Positive
 
 FAITHFUL, PUBLISHED = "faithful", "published"
 
@@ -34,19 +33,8 @@ DEFAULTS: Mapping[str, Mapping[str, float]] = {
 """The keys that each method has, and their defaults."""
 
 
-def _known(method: str) -> str:
-    if method not in DEFAULTS:
-        raise refusal(f"there is no '{method}'", suggestion(method, DEFAULTS, "Choices"))
-    return method
-
-
-Method = Annotated[
-    str, AfterValidator(_known), WithJsonSchema({"type": "string", "enum": list(DEFAULTS)})
-]
-
-
 class SegmentationBlock(Block):
-    method: Method = FAITHFUL
+    method: Annotated[str, OneOf(tuple(DEFAULTS))] = FAITHFUL
     """faithful: the fewest screws that keep every sample near an object; published: Mahalingam and
     Chakraborty's, as in the paper"""
     spacing: Annotated[Positive | None, METRES] = None

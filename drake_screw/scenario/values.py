@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, WithJsonSchema
 from pydantic_core import CoreSchema, core_schema
 
+from drake_screw.errors import suggestion
 from drake_screw.plugins import BUILT_IN, REFERENCE, Group, choices, is_known
 from drake_screw.resources import MODEL_SUFFIXES, looks_like_path
 from drake_screw.scenario.block import refusal
@@ -86,6 +87,27 @@ class PartOf:
     def _known(self, name: str) -> str:
         if not is_known(self.group, name):
             raise refusal(f"there is no '{name}'", choices(self.group, name))
+        return name
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Marks a text as one of a few."""
+
+    names: tuple[str, ...]
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        text = core_schema.str_schema(strict=True)
+        return core_schema.no_info_after_validator_function(self._known, text)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: Any) -> dict[str, Any]:
+        return {"type": "string", "enum": list(self.names)}
+
+    def _known(self, name: str) -> str:
+        if name not in self.names:
+            raise refusal(f"there is no '{name}'", suggestion(name, self.names, "Choices"))
         return name
 
 

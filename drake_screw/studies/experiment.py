@@ -139,6 +139,8 @@ class Experiment:
             initial=setup.initial,
             budget=setup.scenario.demonstrations.budget,
             seed=seed,
+            ask=setup.ask,
+            first=setup.scenario.demonstrations.first,
         )
 
     def _teacher(self, regions: GridRegions) -> Teacher:

@@ -188,7 +188,7 @@ def new_study(
     setup = Experiment(scenario).setup
     for K in regions:
         split(setup.area, K)
-    for part in (setup.strategy, setup.teacher, setup.initial):
+    for part in (setup.strategy, setup.teacher, setup.ask, setup.initial):
         assert part is not None
     model = setup.workcell.model_file
     path = fresh_folder(Path("studies") / scenario.name) if output is None else Path(output)

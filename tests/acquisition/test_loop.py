@@ -13,6 +13,7 @@ from drake_screw.acquisition import (
     Status,
     acquire,
 )
+from drake_screw.acquisition.asking import densest, densest_anywhere
 from drake_screw.bandits import Goal, make_strategy
 from tests.acquisition.conftest import Disks, Obliging, learn, recording_at
 
@@ -55,6 +56,42 @@ def test_suggestions_fail_lie_in_the_weakest_region_and_failed_earliest(disks) -
         seen, region = event.evaluation, event.verdict.region
         mine = seen.failed & (seen.region == region)
         assert event.suggestion.segment == seen.outcomes[mine].furthest_segment.min()
+
+
+@pytest.mark.parametrize("rule", [densest, densest_anywhere])
+def test_with_another_rule_a_run_ends_covered_and_asks_where_it_fails(rule) -> None:
+    away = []
+    for seed in range(4):
+        disks = Disks(radius=0.3, seed=seed)
+        events = run(disks, Obliging(), ask=rule, seed=seed)
+        assert events[-1].status is Status.CERTIFIED
+        asked = [e for e in events if isinstance(e, RoundFinished) and e.suggestion is not None]
+        away += [e.suggestion.region != e.verdict.region for e in asked]
+        for event in asked:
+            place = event.suggestion.x_y_yaw
+            assert disks.regions.index(place) == event.suggestion.region
+            assert not disks.solves(place[None], event.demonstrations).any()
+            assert not disks.solves(event.suggestion.failing, event.demonstrations).any()
+        assert trace(events) == trace(run(disks, Obliging(), ask=rule, seed=seed))
+    assert any(away) == (rule is densest_anywhere)
+
+
+def test_a_rule_that_finds_nothing_to_ask_for_ends_the_run(disks) -> None:
+    end = run(disks, Obliging(), ask=lambda evaluation, region, regions, rng: [])[-1]
+    assert end.status is Status.INSUFFICIENT
+    assert end.reason == "there is no failed instance to demonstrate"
+    assert len(end.demonstrations) == 1
+
+
+def test_the_first_demonstration_is_asked_for_in_the_middle_if_wanted(disks) -> None:
+    teacher = Obliging()
+    run(disks, teacher, initial=3, first="middle")
+    places = [place.x_y_yaw.tolist() for place in teacher.asked]
+    assert places[0] == [[0.5, 0.5, 0.0]]
+    at_random = Obliging()
+    run(disks, at_random, initial=3)
+    assert at_random.asked[0].x_y_yaw.tolist() != places[0]
+    assert [place.x_y_yaw.tolist() for place in at_random.asked[1:3]] == places[1:3]
 
 
 def test_a_budget_ends_the_run_with_what_was_shown() -> None:

@@ -16,4 +16,16 @@ def test_check_tells_what_would_run(command) -> None:
     code, out, _ = command("check", "pouring")
     assert code == 0
     assert "strategy   eprocess" in out
+    assert "asks       earliest; at a random place first" in out
     assert "1,440 in a first round where nothing fails (90 in each region)" in " ".join(out.split())
+
+
+def test_check_tells_where_it_would_ask(command) -> None:
+    def asks(*changes: str) -> str:
+        code, out, _ = command("check", "pouring", *(a for c in changes for a in ("--set", c)))
+        assert code == 0
+        return next(line for line in out.splitlines() if line.startswith("asks")).split(None, 1)[1]
+
+    middle = "demonstrations={ask: densest, first: middle}"
+    assert asks(middle) == "densest; in the middle first"
+    assert asks(middle, "demonstrations.initial=0") == "densest"

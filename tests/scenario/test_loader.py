@@ -137,6 +137,32 @@ def test_a_scenario_stored_before_segmentation_had_methods_is_read_as_published(
     assert load_stored_scenario(file) == ours
 
 
+def test_a_scenario_stored_before_there_were_ways_to_ask_is_read_as_it_was_meant(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "scenario.yaml"
+    changes = ["demonstrations={ask: densest, first: middle}", "teacher.choose=covers_most"]
+    file.write_text(dump_scenario(load_scenario("pouring", changes)))
+    written = load_stored_scenario(file)
+    assert (written.demonstrations.ask, written.demonstrations.first) == ("densest", "middle")
+    assert written.teacher.choose == "covers_most"
+    text = file.read_text()
+    for key in ("  first: middle\n", "  ask: densest\n", ", choose: covers_most"):
+        assert text.count(key) == 1, text
+        text = text.replace(key, "")
+    file.write_text(text)
+    before = load_stored_scenario(file)
+    assert (before.demonstrations.ask, before.demonstrations.first) == ("earliest", "random")
+    assert before.teacher.choose == "nearest"
+
+
+def test_the_papers_scenarios_ask_as_the_paper_does() -> None:
+    for task in ("pouring_paper", "scooping_paper"):
+        text = (Path("scenarios") / f"{task}.yaml").read_text()
+        assert "ask: earliest" in text
+        assert "first: random" in text
+
+
 def test_defaults_fill_what_is_left_out(write: Callable[..., Path]) -> None:
     scenario = load_scenario(write())
     assert scenario.robot.base == "base"

@@ -219,6 +219,24 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         ),
         (with_block("demonstrations", initial=0, budget=0), "demonstrations.budget", "1", ""),
         (
+            with_block("demonstrations", ask="earlyest"),
+            "demonstrations.ask",
+            "there is no 'earlyest'",
+            "Did you mean 'earliest'? Choices: earliest, densest, densest_anywhere",
+        ),
+        (
+            with_block("demonstrations", first="center"),
+            "demonstrations.first",
+            "there is no 'center'",
+            "Choices: random, middle",
+        ),
+        (
+            with_block("teacher", choose="most"),
+            "teacher.choose",
+            "there is no 'most'",
+            "Choices: nearest, covers_most",
+        ),
+        (
             with_block("teacher", kind="recorder"),
             "teacher.kind",
             "there is no 'recorder'",
