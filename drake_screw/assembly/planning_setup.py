@@ -85,6 +85,7 @@ class PlanningSetup:
             tolerance=block.tolerance,
             symmetries=self.symmetries,
             seeds=seeds(chain, block.ik_seeds) if block.approach == "free" else None,
+            redundancy=block.redundancy,
         )
 
     @cached_property

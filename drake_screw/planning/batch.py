@@ -13,6 +13,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.planning.approach import approached
 from drake_screw.planning.columns import Columns, furthest
 from drake_screw.planning.compiled import Answers, Kernel, Order, Settings
+from drake_screw.planning.contract import Redundancy
 from drake_screw.planning.outcomes import Outcomes, Plan, concatenate
 from drake_screw.planning.paths import joint_paths
 from drake_screw.planning.questions import check_question, failed_start
@@ -40,6 +41,7 @@ class BatchPlanner:
         seeds: (S, n) configurations from which inverse kinematics of the first guiding pose sets
             out where the screw from the start fails: the approach is free then. None where every
             motion is along a screw.
+        redundancy: what more joints than six do with the motion that the end effector leaves free.
 
     Attributes:
         evaluations: of dq/ds = J^+ V so far, for benchmarks.
@@ -53,6 +55,7 @@ class BatchPlanner:
         threads: int | None = None,
         symmetries: Symmetries | None = None,
         seeds: Array | None = None,
+        redundancy: Redundancy = "least_norm",
     ) -> None:
         self.chain = chain
         self.seeds = np.zeros((0, chain.n)) if seeds is None else seeds
@@ -60,7 +63,8 @@ class BatchPlanner:
         self.symmetries = symmetries or Symmetries()
         self.threads = threads or os.cpu_count() or 1
         self.evaluations = 0
-        settings = Settings() if tolerance is None else Settings(tolerance=tolerance)
+        self.redundancy = redundancy
+        settings = Settings(tolerance=tolerance or Settings.tolerance, redundancy=redundancy)
         self._kernel = Kernel(chain.screws, chain.home, chain.lower, chain.upper, settings)
 
     @property

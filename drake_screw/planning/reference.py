@@ -18,6 +18,8 @@ from drake_screw.planning.contract import (
     RATE_LIMIT,
     RESIDUAL_LIMIT,
     ROTATION_TOLERANCE,
+    Redundancy,
+    away_from_limits,
     motion_size,
 )
 from drake_screw.planning.outcomes import Cause, Plan, one_outcome
@@ -37,10 +39,19 @@ class ReferencePlanner:
             together.
         joint_step: rad (or m), joint motion in one step, so that steps shrink near
             singularities; at least half of `step`.
+        redundancy: what more joints than six do with the motion that the end effector leaves free.
     """
 
-    def __init__(self, arm: Arm, *, step: float = 0.01, joint_step: float = 0.005) -> None:
+    def __init__(
+        self,
+        arm: Arm,
+        *,
+        step: float = 0.01,
+        joint_step: float = 0.005,
+        redundancy: Redundancy = "least_norm",
+    ) -> None:
         self.arm = arm
+        self.redundancy = redundancy
         self.step = step
         self.joint_step = max(joint_step, step / 2.0)
 
@@ -125,7 +136,10 @@ class ReferencePlanner:
         return V, float(motion_size(shift(V, X_WE[:3, 3])))
 
     def _joint_velocities(self, q: Array, V: Array) -> Array:
-        """J^+ V: the minimum-norm joint velocities of the twist V about W's origin."""
+        """dq/ds of the twist V about W's origin: J^+ V, the minimum-norm joint velocities.
+
+        With `away_from_limits` it is J^+ (V - J z) + z, where z is what `contract` says.
+        """
         return self._velocities_and_residual(q, V)[0]
 
     def _velocities_and_residual(self, q: Array, V: Array) -> tuple[Array, float]:
@@ -133,6 +147,9 @@ class ReferencePlanner:
         X_WE, J_WE = self.arm.pose_and_jacobian(q)
         V_WE = shift(V, X_WE[:3, 3])
         velocities = np.linalg.lstsq(J_WE, V_WE, rcond=None)[0]
+        if self.redundancy == "away_from_limits" and self.arm.n > 6:
+            z = away_from_limits(velocities, q, self.arm.lower, self.arm.upper)
+            velocities += z - np.linalg.lstsq(J_WE, J_WE @ z, rcond=None)[0]
         return velocities, float(motion_size(V_WE - J_WE @ velocities))
 
     def _passes_singularity(self, q: Array, moved: Array) -> bool:

@@ -176,5 +176,8 @@ class PlannerBlock(Block):
     ik_seeds: Annotated[int, Field(ge=1, le=1024)] = 32
     """configurations from which inverse kinematics of the first guiding pose sets out where the
     approach is free"""
+    redundancy: Literal["least_norm", "away_from_limits"] = "least_norm"
+    """what more joints than six do with the motion that the end effector leaves free: as little as
+    can be, as published, or away from the joint limits"""
     collision: bool = False
     """whether a plan that touches the robot itself, the table or an object fails"""

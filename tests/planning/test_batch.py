@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from drake_screw.planning import (
     ReferencePlanner,
     concatenate,
 )
+from drake_screw.planning.contract import Redundancy
 from drake_screw.robot import Arm
 from drake_screw.screws import inverse, pose, pose_from_planar
 
@@ -70,29 +72,39 @@ def assert_same(a: Outcomes, b: Outcomes) -> None:
 
 
 def reference_code(
-    arm: Arm, q_start: np.ndarray, guides: np.ndarray, *, step: float = 0.02, slack: float = 0.0
+    arm: Arm,
+    q_start: np.ndarray,
+    guides: np.ndarray,
+    *,
+    step: float = 0.02,
+    slack: float = 0.0,
+    redundancy: Redundancy = "least_norm",
 ) -> str:
     """What the reference planner says if all limits are this much further out."""
     other = copy.copy(arm)
     other.lower, other.upper = arm.lower - slack, arm.upper + slack
-    planner = ReferencePlanner(other, step=step, joint_step=step / 2.0)
+    planner = ReferencePlanner(other, step=step, joint_step=step / 2.0, redundancy=redundancy)
     return str(planner.plan(q_start, guides).outcome.codes())
 
 
 def assert_agrees_but_within_a_hair(
-    arm: Arm, q_start: np.ndarray, guides: np.ndarray, answer: Outcomes
+    arm: Arm,
+    q_start: np.ndarray,
+    guides: np.ndarray,
+    answer: Outcomes,
+    redundancy: Redundancy = "least_norm",
 ) -> bool:
     """Whether both planners say the same.
 
     If they do not, 5 mrad of limit must make the difference, or else the reference's steps were
     too long for a singularity that it passes, and with shorter ones it says the same.
     """
-    code = str(answer.codes())
-    if reference_code(arm, q_start, guides) == code:
+    code, reference = str(answer.codes()), partial(reference_code, redundancy=redundancy)
+    if reference(arm, q_start, guides) == code:
         return True
-    hair = [reference_code(arm, q_start, guides, slack=slack) for slack in (0.005, -0.005)]
+    hair = [reference(arm, q_start, guides, slack=slack) for slack in (0.005, -0.005)]
     if code not in hair:
-        fine = reference_code(arm, q_start, guides, step=0.002)
+        fine = reference(arm, q_start, guides, step=0.002)
         assert code == fine, f"batch {code}, reference {fine}, with a hair of limit {hair}"
     return False
 

@@ -3,7 +3,8 @@
 The minimum-norm joint velocities dq/ds = J^T (J J^T)^-1 V do not depend on the frame in which J and
 V are expressed. The axes of the middle link are taken: there the two neighbouring joint axes are
 constant, and the others are at most half an arm of rotations away. With fewer than six joints they
-are (J^T J)^-1 J^T V instead, the least squares fit to the motion of the end effector's origin.
+are (J^T J)^-1 J^T V instead, the least squares fit to the motion of the end effector's origin. With
+more than six a motion away from the joint limits may be added that leaves the end effector alone.
 """
 
 from __future__ import annotations
@@ -12,10 +13,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from drake_screw.planning.compiled.expressions import Value
+from drake_screw.planning.compiled.expressions import Value, maximum, minimum, sqrt
 from drake_screw.planning.compiled.functions import cos_sin
 from drake_screw.planning.compiled.link_frames import LinkFrames
 from drake_screw.planning.compiled.matrices import Factor, determinant
+from drake_screw.planning.contract import CENTRING, FREE_PART, SOFTNESS, middle_and_half
 from drake_screw.typing import Array
 
 DAMPING = 1e-14
@@ -59,6 +61,7 @@ class Kinematics:
         J: (6, n) Jacobian in M's axes, its columns twists [w; v] about `about`.
         about: (3,) point in M: M's origin, or with fewer than six joints that of the end effector.
         factor: of J J^T, or with fewer than six joints of J^T J; damped.
+        limits: (2, n) lower and upper joint limits to move away from; None for none.
     """
 
     q: Array
@@ -66,6 +69,7 @@ class Kinematics:
     J: Array
     about: Array
     factor: Factor
+    limits: Array | None = None
 
     def to_middle(self, V: Array) -> Array:
         """A twist (6,) in B about its origin, brought to M's axes and the point `about`."""
@@ -74,10 +78,26 @@ class Kinematics:
         return _shifted(np.concatenate([w, R @ V[3:] + np.cross(p, w)]), self.about)
 
     def joint_velocities(self, V: Array) -> Array:
-        """dq/ds = J^+ V (n,) of a twist in M's axes about `about`."""
+        """dq/ds (n,) of a twist in M's axes about `about`: J^+ V, or J^+ (V - J z) + z."""
+        least = self.minimum_norm(V)
+        if self.limits is None:
+            return least
+        z = self._away_from_limits(least, self.limits)
+        return least + z - self.minimum_norm(self.J @ z)
+
+    def minimum_norm(self, V: Array) -> Array:
+        """J^+ V (n,) of a twist in M's axes about `about`."""
         if len(self.q) < 6:
             return self.factor.solve(self.J.T @ V)
         return self.J.T @ self.factor.solve(V)
+
+    def _away_from_limits(self, least: Array, limits: Array) -> Array:
+        """z (n,) as `contract.away_from_limits` has it, where J^+ V is `least` (n,)."""
+        middle, half = middle_and_half(*limits.astype(float))
+        x = (self.q - middle) * (1.0 / half)
+        beyond = maximum(x - FREE_PART, 0.0) + minimum(x + FREE_PART, 0.0)
+        pull = beyond / maximum(1.0 + SOFTNESS - x * x, SOFTNESS)
+        return -CENTRING * sqrt(least @ least) * pull
 
     def residual(self, V: Array, velocities: Array) -> Value:
         """|V - J dq/ds|^2."""
@@ -85,9 +105,15 @@ class Kinematics:
         return rest @ rest
 
 
-def kinematics(frames: LinkFrames, q: Array) -> tuple[Kinematics, Array]:
-    """An arm at joint positions q (n,), and its X_BE as three rows (3, 4) of [R | p]."""
-    few, X_CE = len(q) < 6, frames.X_CE
+def kinematics(
+    frames: LinkFrames, q: Array, limits: Array | None = None
+) -> tuple[Kinematics, Array]:
+    """An arm at joint positions q (n,), and its X_BE as three rows (3, 4) of [R | p].
+
+    Args:
+        limits: (2, n) joint limits that more joints than six are to move away from.
+    """
+    n, few, X_CE = len(q), len(q) < 6, frames.X_CE
     base, links = link_poses(frames, q)
     R_ME, p_ME = links[-1].R @ X_CE[:3, :3], links[-1].move(X_CE[:3, 3]).p
     about = p_ME if few else np.zeros(3)
@@ -97,7 +123,7 @@ def kinematics(frames: LinkFrames, q: Array) -> tuple[Kinematics, Array]:
     damping = DAMPING_REDUNDANT if few and frames.redundant else DAMPING
     factor = Factor.of(gram + damping * np.eye(len(gram)))
     X_BE = base.R.T @ np.column_stack([R_ME, p_ME - base.p])
-    return Kinematics(q, base, J, about, factor), X_BE
+    return Kinematics(q, base, J, about, factor, limits if n > 6 else None), X_BE
 
 
 def link_poses(frames: LinkFrames, q: Array) -> tuple[Pose, list[Pose]]:

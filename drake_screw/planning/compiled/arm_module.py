@@ -82,11 +82,11 @@ def programs(
     frames: LinkFrames, lower: Array, upper: Array, settings: step_code.Settings
 ) -> tuple[tuple[Program, ...], int]:
     """All programs of an arm, and the number of rows of its blocks."""
-    n = len(frames.revolute)
-    arrive, aim, count = step_code.arrive_and_aim(frames, settings)
+    n, limits = len(frames.revolute), settings.limits(lower, upper)
+    arrive, aim, count = step_code.arrive_and_aim(frames, settings, limits)
     blends = [step_code.blend(n, stage) for stage in range(1, len(step_code.TABLEAU) + 1)]
     judge = step_code.judge(lower, upper, settings)
-    return (*blends, step_code.rate(frames), arrive, judge, aim), count
+    return (*blends, step_code.rate(frames, limits), arrive, judge, aim), count
 
 
 def load(programs: Sequence[Program]) -> ModuleType:

@@ -45,6 +45,7 @@ from drake_screw.planning.contract import (
     ORIENTATION_MIN,
     RATE_LIMIT,
     RESIDUAL_LIMIT,
+    Redundancy,
 )
 from drake_screw.typing import Array
 
@@ -62,7 +63,7 @@ ERROR = (71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 
 
 @dataclass(frozen=True)
 class Settings:
-    """Constants of the integrator; the defaults are measured.
+    """What is integrated, and constants of the integrator; the defaults are measured.
 
     Attributes:
         tolerance: bound on the estimated error of a step, rad (m for prismatic joints).
@@ -74,6 +75,7 @@ class Settings:
         rate_max: bound on |dq/ds| per unit of end-effector motion (see `contract.motion_size`),
             rad.
         residual_max: bound on the part of the end-effector motion that the joints cannot give.
+        redundancy: what more joints than six do with the motion that the end effector leaves free.
     """
 
     tolerance: float = 1e-4
@@ -83,6 +85,11 @@ class Settings:
     step_min: float = 1e-6
     rate_max: float = RATE_LIMIT
     residual_max: float = RESIDUAL_LIMIT
+    redundancy: Redundancy = "least_norm"
+
+    def limits(self, lower: Array, upper: Array) -> Array | None:
+        """Joint limits (2, n) that joints are to move away from; None where they are not to."""
+        return np.stack([lower, upper]) if self.redundancy == "away_from_limits" else None
 
 
 def blend(n: int, stage: int) -> Program:
@@ -98,16 +105,18 @@ def blend(n: int, stage: int) -> Program:
     return b.program(f"blend_{stage}")
 
 
-def rate(frames: LinkFrames) -> Program:
-    """dq/ds at q_stage."""
+def rate(frames: LinkFrames, limits: Array | None = None) -> Program:
+    """dq/ds at q_stage; limits as for `kinematics`."""
     b, rows = Block(), r.Rows(len(frames.revolute))
-    arm, _ = kinematics(frames, b[rows.q_stage : rows.rate])
+    arm, _ = kinematics(frames, b[rows.q_stage : rows.rate], limits)
     V = arm.to_middle(b[r.TWIST : r.TWIST + 6])
     b[rows.rate : rows.slope(0)] = arm.joint_velocities(V)
     return b.program("rate")
 
 
-def arrive_and_aim(frames: LinkFrames, settings: Settings) -> tuple[Program, Program, int]:
+def arrive_and_aim(
+    frames: LinkFrames, settings: Settings, limits: Array | None = None
+) -> tuple[Program, Program, int]:
     """The two programs, and the number of rows in a block.
 
     arrive: dq/ds and the pose of the end effector at the end of the step.
@@ -115,7 +124,7 @@ def arrive_and_aim(frames: LinkFrames, settings: Settings) -> tuple[Program, Pro
     """
     n = len(frames.revolute)
     b, rows = Block(), r.Rows(n)
-    arm, X_BE = kinematics(frames, b[rows.q_stage : rows.rate])
+    arm, X_BE = kinematics(frames, b[rows.q_stage : rows.rate], limits)
     V = arm.to_middle(b[r.TWIST : r.TWIST + 6])
     b[rows.slope(6) : rows.slope(7)] = arm.joint_velocities(V)
     if n <= 6:
