@@ -1,8 +1,8 @@
 """What symmetric objects bring: coverage of single demonstrations, and what trying turns costs.
 
 For each task: the share of N instances that one demonstration solves, with the object as it stands
-and with every turn of it; the share that the first turn solves; evaluations of J^+ V for a plan; and
-answers a second, of all instances and of those that the first turn solves.
+and with every turn of it; the share that the first turn solves; evaluations of J^+ V for a plan;
+and answers a second, of all instances and of those that the first turn solves.
 
     python benchmarks/symmetry.py [--demonstrations DIR --model SDF] [--instances 2000]
 
@@ -86,8 +86,8 @@ def main() -> None:
             covered = found.success.mean(axis=0)
             at_once = (found.success & (found.variant == 0)).mean()
             print(
-                f"{task:9} {name:8}  {covered.mean():.3f} ({covered.min():.3f}..{covered.max():.3f})"
-                f"  {at_once:10.3f}  {work:11.0f}  {speed[0]:9,.0f}  {speed[1]:9,.0f}"
+                f"{task:9} {name:8}  {covered.mean():.3f} "
+                f"({covered.min():.3f}..{covered.max():.3f})  {at_once:10.3f}  {work:11.0f}  {speed[0]:9,.0f}  {speed[1]:9,.0f}"
             )
 
 
