@@ -87,7 +87,8 @@ def main() -> None:
             at_once = (found.success & (found.variant == 0)).mean()
             print(
                 f"{task:9} {name:8}  {covered.mean():.3f} "
-                f"({covered.min():.3f}..{covered.max():.3f})  {at_once:10.3f}  {work:11.0f}  {speed[0]:9,.0f}  {speed[1]:9,.0f}"
+                f"({covered.min():.3f}..{covered.max():.3f})  {at_once:10.3f}  {work:11.0f}"
+                f"  {speed[0]:9,.0f}  {speed[1]:9,.0f}"
             )
 
 
