@@ -17,6 +17,7 @@ from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
 from drake_screw.bandits.eprocess import EProcess
 from drake_screw.bandits.naive_pac import NaivePac, sample_size
 from drake_screw.bandits.spending import attempt_delta
+from drake_screw.planning import connection
 from drake_screw.scenario.schema import Scenario
 
 PROBE = 2_000
@@ -126,6 +127,8 @@ class Preview:
         recordings_named: whether the scenario names recordings.
         budget: most demonstrations in total.
         farthest_corner: m, of the work area from the shoulder.
+        lacks_ompl: whether approaches fail that OMPL, which is not installed, would lead around
+            what they touch.
         samples: instances of a round.
         plans_per_second: here, measured with one demonstration; None if there is none to begin
             with.
@@ -150,6 +153,7 @@ class Preview:
     recordings_named: bool
     budget: int
     farthest_corner: float
+    lacks_ompl: bool
     samples: PreviewedSamples
     plans_per_second: float | None
 
@@ -179,6 +183,8 @@ class Preview:
                 f"the farthest corner of the work area is {self.farthest_corner:.2f} m from the "
                 "shoulder; only an object held long reaches there",
             )
+        if self.lacks_ompl:
+            yield "note", connection.ABSENT
         rate = self.plans_per_second
         if rate is None:
             yield "time", "unknown without a first demonstration"
@@ -204,7 +210,7 @@ def preview(scenario: Scenario) -> Preview:
     setup = Setup(scenario)
     arm, goal, tree, block = setup.workcell.arm, setup.goal, setup.tree, scenario.teacher
     recordings = teacher_recordings(setup)
-    chain, recorder = arm.screw_chain(), setup.recorder
+    chain, recorder, planner = arm.screw_chain(), setup.recorder, scenario.planner
     other = None
     if recorder.model_file is not None:
         reach = recorder.arm.screw_chain().reach
@@ -233,6 +239,7 @@ def preview(scenario: Scenario) -> Preview:
         or not isinstance(scenario.demonstrations.initial, int),
         budget=scenario.demonstrations.budget,
         farthest_corner=_farthest_corner(setup),
+        lacks_ompl=planner.approach == "free" and planner.collision and not connection.available(),
         samples=_samples(setup),
         plans_per_second=_plans_per_second(setup),
     )

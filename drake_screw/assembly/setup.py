@@ -18,7 +18,7 @@ from drake_screw.assembly.sanity import check_reach, check_start
 from drake_screw.assembly.symmetries import symmetries
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
-from drake_screw.planning import BatchPlanner, Outcomes, Planner, Symmetries
+from drake_screw.planning import BatchPlanner, Cause, Outcomes, Plan, Planner, Symmetries
 from drake_screw.planning.approach import seeds
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.plugins import find
@@ -31,7 +31,7 @@ from drake_screw.robot import (
 )
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, free_axes
-from drake_screw.typing import PathLike
+from drake_screw.typing import Array, PathLike
 
 
 class Parts(TypedDict, total=False):
@@ -169,6 +169,23 @@ class Setup:
         if self.scenario.planner.collision:
             return CollisionFreePlanner(self.batch_planner, self.workcell)
         return self.batch_planner
+
+    def plan(self, demonstration: Demonstration, X_WO: Array, outcome: Outcomes) -> Plan:
+        """The plan that an outcome of `planner`, of shape (), is about.
+
+        Of a collision it is whole, as the joints would allow it. A planner that was passed in gives
+        its own plans if it has a method `plan` like that of `BatchPlanner`.
+
+        Args:
+            demonstration: that was planned with.
+            X_WO: (k, 4, 4) the objects.
+            outcome: what the planner found.
+        """
+        planner = getattr(self.planner, "plan", self.batch_planner.plan)
+        if outcome.cause == Cause.COLLISION:
+            planner = self.batch_planner.plan
+        plan: Plan = planner(demonstration, X_WO, self.workcell.start, int(outcome.variant))
+        return plan
 
     @cached_property
     def goal(self) -> Goal:

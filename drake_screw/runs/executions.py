@@ -88,7 +88,7 @@ def execute(
     X_WO = setup.area.X_WO(x_y_yaw)
     by = outcomes.best_attempt
     solved = np.flatnonzero(outcomes.any_success)
-    plans = setup.batch_planner.plans(
+    plans = planner.plans(
         demonstrations,
         X_WO[solved],
         setup.workcell.start,

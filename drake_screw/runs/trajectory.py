@@ -91,7 +91,7 @@ def write_trajectory(
         )
     chosen = demonstrations[int(outcomes.best_attempt)]
     variant = int(outcomes.best.variant)
-    plan = setup.batch_planner.plan(chosen, X_WO, setup.workcell.start, variant)
+    plan = planner.plan(chosen, X_WO, setup.workcell.start, variant)
     timed = time_plan(plan, np.concatenate([arm.pose(plan.q[:1]), plan.guides]), arm)
     named = [o.name for o in setup.area.objects]
     turned = setup.symmetries.named(chosen, X_WO, plan.angles, named)
