@@ -31,7 +31,7 @@ from drake_screw.execution import (
     simulate,
     time_plan,
 )
-from drake_screw.planning.collisions import PlanChecker
+from drake_screw.planning.plan_checker import PlanChecker
 from drake_screw.robot import Arm
 from drake_screw.scenario.loader import load_scenario
 

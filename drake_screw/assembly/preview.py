@@ -24,6 +24,7 @@ from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
 from drake_screw.bandits.eprocess import EProcess
 from drake_screw.bandits.naive_pac import NaivePac, sample_size
 from drake_screw.bandits.spending import attempt_delta
+from drake_screw.planning import connection
 from drake_screw.scenario.schema import Scenario
 
 PROBE = 2_000
@@ -53,6 +54,8 @@ class Preview:
         first: where the first one is, "random" or "middle"; None where it is not asked for so.
         budget: most demonstrations in total.
         farthest_corner: m, of the work area from the shoulder.
+        lacks_ompl: whether approaches fail that OMPL, which is not installed, would lead around
+            what they touch.
         samples: instances of a round.
         plans_per_second: here, measured with one demonstration; None if there is none to begin
             with.
@@ -81,6 +84,7 @@ class Preview:
     first: str | None
     budget: int
     farthest_corner: float
+    lacks_ompl: bool
     samples: PreviewedSamples
     plans_per_second: float | None
 
@@ -115,6 +119,8 @@ class Preview:
                 f"the farthest corner of the work area is {self.farthest_corner:.2f} m from the "
                 "shoulder; only an object held long reaches there",
             )
+        if self.lacks_ompl:
+            yield "note", connection.ABSENT
         rate = self.plans_per_second
         if rate is None:
             yield "time", "unknown without a first demonstration"
@@ -140,7 +146,7 @@ def preview(scenario: Scenario) -> Preview:
     setup = Setup(scenario)
     arm, goal, tree, block = setup.workcell.arm, setup.goal, setup.tree, scenario.teacher
     asking, recordings = scenario.demonstrations, teacher_recordings(setup)
-    chain, recorder = arm.screw_chain(), setup.recorder
+    chain, recorder, planner = arm.screw_chain(), setup.recorder, scenario.planner
     other = None
     if recorder.model_file is not None:
         reach = recorder.arm.screw_chain().reach
@@ -172,6 +178,7 @@ def preview(scenario: Scenario) -> Preview:
         first=asking.first if asking.initial and isinstance(asking.initial, int) else None,
         budget=asking.budget,
         farthest_corner=_farthest_corner(setup),
+        lacks_ompl=planner.approach == "free" and planner.collision and not connection.available(),
         samples=_samples(setup),
         plans_per_second=_plans_per_second(setup),
     )

@@ -114,7 +114,7 @@ def best_plan(
     """The plan with the largest margin that touches nothing.
 
     Every turn of every demonstration is tried; where the approach is free and no screw leads to the
-    first guiding pose, the other ways to it are, too.
+    first guiding pose, the other ways to it are, too, and at last those around what is in the way.
 
     Args:
         planner: for limits, reach and collisions.
@@ -130,17 +130,15 @@ def best_plan(
         ScenarioError: there is no plan; it says why.
     """
     X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
-    candidates = [
-        RankedPlan(
-            demonstration,
-            plan,
-            planner.planner.symmetries.named(demonstration, X_WO, plan.angles, names),
-            arm,
-            speed or TimeLimits(),
-        )
-        for demonstration, plan in _plans(planner.planner, demonstrations, X_WO, q_start)
-    ]
-    candidates.sort(key=lambda c: (-c.margin, c.length))
+
+    def ranked(plans: list[tuple[Demonstration, Plan]]) -> list[RankedPlan]:
+        found = []
+        for demonstration, plan in plans:
+            turned = planner.planner.symmetries.named(demonstration, X_WO, plan.angles, names)
+            found.append(RankedPlan(demonstration, plan, turned, arm, speed or TimeLimits()))
+        return sorted(found, key=lambda one: (-one.margin, one.length))
+
+    candidates = ranked(_plans(planner.planner, demonstrations, X_WO, q_start))
     found: list[RankedPlan] = []
     for first in range(0, len(candidates), CHECKED):
         some = candidates[first : first + CHECKED]
@@ -151,6 +149,12 @@ def best_plan(
             break
     if not found:
         outcomes = planner.all_outcomes(demonstrations, X_WO[None], q_start)[0]
+        solved = np.flatnonzero(outcomes.success)
+        poses = np.broadcast_to(X_WO, (len(solved), *X_WO.shape))
+        plans = planner.plans(demonstrations, poses, q_start, solved, outcomes.variant[solved])
+        led = [(demonstrations[d], plan) for d, plan in zip(solved.tolist(), plans, strict=True)]
+        found = ranked(led)
+    if not found:
         raise ScenarioError(
             f"no demonstration gives a plan there: "
             f"{why_not(outcomes, demonstrations, X_WO, q_start, planner)}",

@@ -19,11 +19,11 @@ from drake_screw.assembly.ranked_plans import RankedPlan, best_plan
 from drake_screw.assembly.recorder import Learning, Recorder
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
-from drake_screw.planning import Outcomes, Planner
+from drake_screw.planning import Cause, Outcomes, Plan, Planner
 from drake_screw.plugins import find
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import free_axes
-from drake_screw.typing import PathLike
+from drake_screw.typing import Array, PathLike
 
 
 class Parts(TypedDict, total=False):
@@ -84,6 +84,23 @@ class Setup(PlanningSetup):
         if self.scenario.planner.collision:
             return self.careful_planner
         return self.batch_planner
+
+    def judged_plan(self, demonstration: Demonstration, X_WO: Array, outcome: Outcomes) -> Plan:
+        """The plan that an outcome of `planner`, of shape (), is about.
+
+        Of a collision it is whole, as the joints would allow it. A planner that was passed in gives
+        its own plans if it has a method `plan` like that of `BatchPlanner`.
+
+        Args:
+            demonstration: that was planned with.
+            X_WO: (k, 4, 4) the objects.
+            outcome: what the planner found.
+        """
+        planner = getattr(self.planner, "plan", self.batch_planner.plan)
+        if outcome.cause == Cause.COLLISION:
+            planner = self.batch_planner.plan
+        plan: Plan = planner(demonstration, X_WO, self.workcell.start, int(outcome.variant))
+        return plan
 
     @cached_property
     def goal(self) -> Goal:

@@ -16,7 +16,7 @@ from drake_screw.planning.compiled import Answers, Kernel, Order, Settings
 from drake_screw.planning.contract import Redundancy
 from drake_screw.planning.outcomes import Outcomes, Plan, concatenate
 from drake_screw.planning.paths import joint_paths
-from drake_screw.planning.questions import check_question, failed_start
+from drake_screw.planning.questions import check_choice, check_question, failed_start
 from drake_screw.planning.symmetry import Symmetries
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import translation_distance
@@ -181,15 +181,12 @@ class BatchPlanner:
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         which = np.asarray(which, dtype=np.int64)
         check_question(self.chain, demonstrations, X_WO, q_start)
-        N, D = len(X_WO), len(demonstrations)
-        if which.shape != (N,) or ((which < 0) | (which >= D)).any():
-            raise ValueError(f"which must be {N} indices from 0 to {D - 1}, it is {which}")
+        N = len(X_WO)
+        variant = np.broadcast_to(np.asarray(variant, dtype=np.int64), (N,))
+        columns = self._columns(demonstrations, X_WO, range(1 + len(self.others)))
+        check_choice(which, variant, N, columns.counts)
         if N == 0:
             return ()
-        columns = self._columns(demonstrations, X_WO, range(1 + len(self.others)))
-        variant = np.broadcast_to(np.asarray(variant, dtype=np.int64), (N,))
-        if ((variant < 0) | (variant >= columns.counts[which])).any():
-            raise ValueError(f"variant must be one of those that there are, it is {variant}")
         guides, angles = columns.followed(X_WO, which, variant)
         failed = failed_start(self.chain, q_start, (N,))
         if failed is not None:

@@ -23,6 +23,8 @@ from drake_screw.typing import Array
 CELL = 0.1  # rad (or m), of the grid on which neighbouring links are looked at
 REACH = 0.15  # m, that a shape may extend from the points that stand for it
 
+MANY = 250  # configurations that are worth a thread
+
 SLENDER = 0.7
 """Half length of a piece of a shape, over its cross-section's radius, that one sphere covers."""
 
@@ -68,10 +70,15 @@ class Bubbles:
         p = (E[..., :3, :3] @ self.centers[:, None, :, None])[..., 0] + E[..., :3, 3]
         p = np.ascontiguousarray(np.moveaxis(p, 0, 1))
         distance = np.empty(p.shape[:2])
-        _bounds(
-            p, self.radii, self.X_BW, self.sizes, self.objects, self.facing, self.pairs,
-            np.ascontiguousarray(inverse(X_WO)), distance,
-        )  # fmt: skip
+        threads = nb.get_num_threads()
+        nb.set_num_threads(min(threads, 1 + len(p) // MANY))
+        try:
+            _bounds(
+                p, self.radii, self.X_BW, self.sizes, self.objects, self.facing, self.pairs,
+                np.ascontiguousarray(inverse(X_WO)), distance,
+            )  # fmt: skip
+        finally:
+            nb.set_num_threads(threads)
         return distance, p
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning.outcomes import Cause, Outcomes
@@ -42,6 +43,26 @@ def check_question(
             )
         if not np.isfinite(d.X_OE).all():
             raise ValueError(f"demonstration '{d.name}' has guiding poses that are not finite")
+
+
+def check_choice(
+    which: NDArray[np.int64], variant: NDArray[np.int64], N: int, counts: NDArray[np.int64]
+) -> None:
+    """Refuses what is no demonstration, or no variant of it.
+
+    Args:
+        which, variant: (N,) of the demonstration and of its variant.
+        N: instances.
+        counts: (D,) variants of each demonstration.
+
+    Raises:
+        ValueError: an index is out of range, or there are not N of them.
+    """
+    D = len(counts)
+    if which.shape != (N,) or ((which < 0) | (which >= D)).any():
+        raise ValueError(f"which must be {N} indices from 0 to {D - 1}, it is {which}")
+    if ((variant < 0) | (variant >= counts[which])).any():
+        raise ValueError(f"variant must be one of those that there are, it is {variant}")
 
 
 def failed_start(chain: ScrewChain, q_start: Array, shape: tuple[int, ...]) -> Outcomes | None:

@@ -29,6 +29,9 @@ from drake_screw.typing import Array
 WOOD = np.array([0.76, 0.68, 0.56, 1.0])
 CLAY = np.array([0.93, 0.93, 0.90, 1.0])
 
+MANY = 100
+"""Configurations from which on sharing them out among threads takes less time than it saves."""
+
 
 @dataclass(frozen=True)
 class RobotConfig:
@@ -117,7 +120,8 @@ class Workcell:
             (m,) bool.
         """
         full = self.positions(q, X_WO)
-        free = self.checker.CheckConfigsCollisionFree(list(full), parallelize=True)
+        parallel = len(full) >= MANY
+        free = self.checker.CheckConfigsCollisionFree(list(full), parallelize=parallel)
         return ~np.array(free, dtype=bool)
 
     def colliding_bodies(self, q: ArrayLike, X_WO: ArrayLike) -> tuple[tuple[str, str], ...]:

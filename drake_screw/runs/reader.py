@@ -27,7 +27,7 @@ from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.codec import REMEDY, load_evaluation
 from drake_screw.runs.directory import INSTANCES, RunDirectory
-from drake_screw.visualization.attempt import Attempt, attempt, cut_short
+from drake_screw.visualization.attempt import Attempt, attempt, collided
 from drake_screw.visualization.browsing import Catalogue, catalogue
 from drake_screw.visualization.rounds import cells
 
@@ -236,16 +236,11 @@ class RunReader:
         if found.cause == Cause.NOT_TRIED:
             planner = self.setup.planner
             found = planner.all_outcomes([demonstration], X_WO[None], workcell.start)[0, 0]
-        variant = int(found.variant)
-        plan = self.setup.batch_planner.plan(demonstration, X_WO, workcell.start, variant)
+        plan = self.setup.judged_plan(demonstration, X_WO, found)
         names = [o.name for o in self.setup.area.objects]
         turned = self.setup.symmetries.named(demonstration, X_WO, plan.angles, names)
         tried = replace(attempt(workcell.arm, number, demonstration, X_WO, plan), turned=turned)
-        if int(found.cause) == Cause.COLLISION and int(tried.cause) != Cause.COLLISION:
-            tried = replace(tried, plan=cut_short(tried.plan, found))
-        if tried.cause == Cause.COLLISION:
-            tried = replace(tried, bodies=workcell.colliding_bodies(tried.plan.q[-1], X_WO))
-        return tried
+        return collided(tried, found, workcell) if found.cause == Cause.COLLISION else tried
 
     def _event(self, round: int) -> RoundFinished:
         """A round as the run had it; without drawing or planning anything."""

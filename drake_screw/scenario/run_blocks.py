@@ -172,7 +172,8 @@ class PlannerBlock(Block):
     """turns that are tried of an object or tool that may be turned by any angle"""
     approach: Literal["screw", "free"] = "screw"
     """how the arm comes to the first guiding pose: along a screw, as published, or by any joint
-    motion"""
+    motion; with `collision`, that leads around what is in the way if OMPL is installed
+    (`pip install 'drake-screw[ompl]'`)"""
     ik_seeds: Annotated[int, Field(ge=1, le=1024)] = 32
     """configurations from which inverse kinematics of the first guiding pose sets out where the
     approach is free"""

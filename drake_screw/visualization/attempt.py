@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause, Outcomes, Plan, Turned
-from drake_screw.robot import Arm
+from drake_screw.robot import Arm, Workcell
 from drake_screw.screws import Screw, screw_between
 from drake_screw.typing import Array
 from drake_screw.visualization.screw_drawing import (
@@ -166,6 +166,12 @@ def cut_short(plan: Plan, outcome: Outcomes) -> Plan:
         s=np.append(plan.s[:k], fraction),
         outcome=outcome,
     )
+
+
+def collided(attempt: Attempt, outcome: Outcomes, workcell: Workcell) -> Attempt:
+    """An attempt cut short where an outcome of shape (), a collision, says that it ended."""
+    plan = cut_short(attempt.plan, outcome)
+    return replace(attempt, plan=plan, bodies=workcell.colliding_bodies(plan.q[-1], attempt.X_WO))
 
 
 def headline(attempt: Attempt) -> str:

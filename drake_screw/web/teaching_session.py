@@ -15,10 +15,17 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import FaithfulConfig, Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
+from drake_screw.planning import Cause
 from drake_screw.runs.narration import place
 from drake_screw.screws import exp, log, pose
 from drake_screw.typing import Array
-from drake_screw.visualization.attempt import Attempt, attempt, describe_segment, headline
+from drake_screw.visualization.attempt import (
+    Attempt,
+    attempt,
+    collided,
+    describe_segment,
+    headline,
+)
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.palette import STATUS_COLORS
 
@@ -214,8 +221,12 @@ class TeachingSession:
         """Cut a recording into screws and plan the suggested instance with it."""
         demonstration = self._setup.learn(recording)
         workcell = self._setup.workcell
-        plan = self._setup.batch_planner.plan(demonstration, self._X_WO, workcell.start)
-        tried = attempt(workcell.arm, self._number, demonstration, self._X_WO, plan)
+        planner, X_WO = self._setup.planner, self._X_WO
+        found = planner.all_outcomes([demonstration], X_WO[None], workcell.start)[0, 0]
+        plan = self._setup.judged_plan(demonstration, X_WO, found)
+        tried = attempt(workcell.arm, self._number, demonstration, X_WO, plan)
+        if found.cause == Cause.COLLISION:
+            tried = collided(tried, found, workcell)
         self._inspector.draw(tried)
         self._segments = _segment_lines(tried)
         self._message = (

@@ -9,8 +9,9 @@ import pytest
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import BatchPlanner, Cause, Plan, paths
-from drake_screw.planning.collisions import SLACK, CollisionFreePlanner, PlanChecker
+from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.planning.outcomes import one_outcome
+from drake_screw.planning.plan_checker import SLACK, PlanChecker
 from drake_screw.robot import ObjectConfig, RobotConfig, Workcell, build_workcell
 from drake_screw.screws import inverse, pose
 from tests.robot.small_arms import JointText, sdf

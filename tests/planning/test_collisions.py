@@ -11,7 +11,8 @@ from pydrake.geometry import Box, Capsule, Cylinder, Ellipsoid, Sphere
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import BatchPlanner, Cause, Plan, ReferencePlanner, Symmetries
 from drake_screw.planning.clearance import bubbles_of, covering, half_extents
-from drake_screw.planning.collisions import SPACING, CollisionFreePlanner, PlanChecker
+from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.planning.plan_checker import SPACING, PlanChecker
 from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig, build_workcell
 from drake_screw.screws import exp, pose, rotation_angle, sclerp, translation_distance
 from drake_screw.tasks import Symmetry

@@ -1,0 +1,134 @@
+"""A scenario with a pole in the way: judged, looked at, executed and exported by the same plan."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from drake_screw.assembly.preview import preview
+from drake_screw.assembly.setup import Setup
+from drake_screw.execution.timing import time_plan
+from drake_screw.planning import Cause, connection
+from drake_screw.runs.executions import execute
+from drake_screw.runs.run import new_run
+from drake_screw.runs.trajectory import write_trajectory
+from drake_screw.scenario.loader import load_scenario
+from drake_screw.scenario.schema import Scenario
+from drake_screw.visualization.attempt import attempt, collided, headline
+from tests.planning.pole_in_the_way import CLOSED, PASSABLE, POLE, START, lesson_of, robot_in
+
+AT = {"pole": tuple(PASSABLE[0, :2, 3].tolist())}
+
+
+@pytest.fixture(scope="module")
+def scenario(tmp_path_factory: pytest.TempPathFactory) -> Scenario:
+    folder = tmp_path_factory.mktemp("pole")
+    robot = robot_in(folder)
+    (folder / "pole.yaml").write_text(
+        f"""
+name: pole
+robot:
+  model: {robot.model}
+  joints: [{", ".join(robot.joints)}]
+  end_effector: hand
+  start: {START.tolist()}
+objects:
+  - {{name: pole, x: [0.3, 0.75], y: [0, 0.1], yaw: 0, z: {PASSABLE[0, 2, 3]},
+     radius: {POLE.radius}, height: {POLE.height}}}
+regions: {{grid: {{x: 1}}}}
+coverage: {{beta: 0.9, epsilon: 0.05, delta: 0.05}}
+demonstrations: {{initial: 1, budget: 2}}
+teacher: {{kind: interactive}}
+planner: {{approach: free, collision: true}}
+"""
+    )
+    return load_scenario(folder / "pole.yaml")
+
+
+@pytest.fixture(scope="module")
+def setup(scenario: Scenario) -> Setup:
+    return Setup(scenario)
+
+
+def test_a_setup_has_the_plan_that_its_planner_judged(setup: Setup) -> None:
+    pytest.importorskip("ompl")
+    lesson = lesson_of(setup.workcell, PASSABLE)
+    found = setup.planner.all_outcomes([lesson], PASSABLE[None], START)[0, 0]
+    assert found.success
+    plan = setup.judged_plan(lesson, PASSABLE, found)
+    assert plan.success
+    assert setup.planner.checker.explain(plan, PASSABLE) is None
+
+
+def test_a_collision_is_shown_on_the_straight_approach(setup: Setup) -> None:
+    lesson, workcell = lesson_of(setup.workcell, CLOSED), setup.workcell
+    found = setup.planner.all_outcomes([lesson], CLOSED[None], START)[0, 0]
+    assert found.cause == Cause.COLLISION
+    plan = setup.judged_plan(lesson, CLOSED, found)
+    assert plan.success
+    tried = collided(attempt(workcell.arm, 0, lesson, CLOSED, plan), found, workcell)
+    assert len(tried.plan.q) < len(plan.q)
+    assert "pole" in headline(tried)
+
+
+def test_a_planner_of_ones_own_may_give_plans(scenario: Scenario, setup: Setup) -> None:
+    class Own:
+        def all_outcomes(self, *_: object) -> None: ...
+        def any_success(self, *_: object) -> None: ...
+
+    class WithPlans(Own):
+        def plan(self, demonstration, X_WO, q_start, variant=0):
+            return "its own", variant
+
+    lesson = lesson_of(setup.workcell, PASSABLE)
+    found = setup.batch_planner.all_outcomes([lesson], PASSABLE[None], START)[0, 0]
+    assert found.success
+    plain = Setup(scenario, planner=lambda _: Own())
+    assert plain.plan(lesson, PASSABLE, found).success
+    own = Setup(scenario, planner=lambda _: WithPlans())
+    assert own.plan(lesson, PASSABLE, found) == ("its own", int(found.variant))
+
+
+def test_it_is_executed_and_exported(
+    scenario: Scenario, setup: Setup, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("ompl")
+    lesson, arm = lesson_of(setup.workcell, PASSABLE), setup.workcell.arm
+    for module in ("executions", "trajectory"):
+        monkeypatch.setattr(f"drake_screw.runs.{module}.known_demonstrations", lambda _: (lesson,))
+    new_run(scenario, tmp_path / "run", teacher=lambda _: SimpleNamespace())
+    text = str(execute(tmp_path / "run", instance=AT, workers=1))
+    assert "1 instances, 1 executed" in text
+    assert re.search(r"with contact +0\n", text)
+
+    exported = []
+
+    def keep(plan, poses, of):
+        exported.append(time_plan(plan, poses, of))
+        return exported[-1]
+
+    monkeypatch.setattr("drake_screw.runs.trajectory.time_plan", keep)
+    write_trajectory(tmp_path / "run", AT, "npz", tmp_path / "plan.npz")
+    _, q, _ = exported[0].sampled(5e-3)
+    np.testing.assert_allclose(q[0], START, atol=1e-9)
+    np.testing.assert_allclose(arm.pose(q[-1]), lesson.transfer(PASSABLE)[-1], atol=2e-3)
+    assert not setup.workcell.collides(q, PASSABLE).any()
+
+
+def test_check_says_what_ompl_would_be_good_for(
+    scenario: Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("ompl")
+    assert "ompl" not in str(preview(scenario))
+    monkeypatch.setattr(connection, "available", lambda: False)
+    found = preview(scenario)
+    assert found.lacks_ompl
+    assert "pip install 'drake-screw[ompl]'" in str(found)
+    screws = scenario.model_copy(
+        update={"planner": scenario.planner.model_copy(update={"approach": "screw"})}
+    )
+    assert not preview(screws).lacks_ompl
