@@ -63,7 +63,6 @@ class BatchPlanner:
         self.symmetries = symmetries or Symmetries()
         self.threads = threads or os.cpu_count() or 1
         self.evaluations = 0
-        self.redundancy = redundancy
         settings = Settings(tolerance=tolerance or Settings.tolerance, redundancy=redundancy)
         self._kernel = Kernel(chain.screws, chain.home, chain.lower, chain.upper, settings)
 

@@ -56,6 +56,9 @@ def _problem(detail: ErrorDetails, data: Any) -> Problem:
             return Problem(keys, "unknown key", suggestion(str(name), _valid(keys[:-1]), where))
     schema, meaning = at(keys)
     match detail["type"]:
+        case "literal_error" if isinstance(value, str) and "enum" in schema:
+            remedy = suggestion(value, schema["enum"], "Choices")
+            return Problem(keys, f"there is no '{value}'", remedy)
         case "string_pattern_mismatch":
             return Problem(keys, f"expected the {meaning}; found '{value}'")
         case kind if kind in _BOUNDS:

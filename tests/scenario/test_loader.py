@@ -163,6 +163,16 @@ def test_the_papers_scenarios_ask_as_the_paper_does() -> None:
         assert "first: random" in text
 
 
+def test_a_scenario_stored_before_joints_moved_away_from_limits_is_of_least_norm(
+    tmp_path: Path,
+) -> None:
+    file, ours = tmp_path / "scenario.yaml", load_scenario("pouring")
+    file.write_text(dump_scenario(ours).replace("redundancy: least_norm, ", ""))
+    assert "redundancy" not in file.read_text()
+    assert load_stored_scenario(file) == ours
+    assert ours.planner.redundancy == "least_norm"
+
+
 def test_defaults_fill_what_is_left_out(write: Callable[..., Path]) -> None:
     scenario = load_scenario(write())
     assert scenario.robot.base == "base"
