@@ -62,7 +62,7 @@ class BatchPlanner:
         self.others = range(1, 1 + len(self.seeds))
         self.symmetries = symmetries or Symmetries()
         self.threads = threads or os.cpu_count() or 1
-        self.evaluations = 0
+        self.evaluations, self.redundancy = 0, redundancy
         settings = Settings(tolerance=tolerance or Settings.tolerance, redundancy=redundancy)
         self._kernel = Kernel(chain.screws, chain.home, chain.lower, chain.upper, settings)
 
