@@ -118,7 +118,12 @@ def test_the_papers_reading_is_shipped_and_does_not_move(task: str) -> None:
     assert (paper.coverage.strategy, paper.cells) == ("naive_pac", ((4, 4, 1),))
     assert (paper.coverage.beta, paper.coverage.epsilon, paper.coverage.delta) == (0.95, 0.02, 0.05)
     assert not paper.planner.collision
-    for same in ("robot", "table", "objects", "teacher", "seed"):
+    assert paper.planner.approach == "screw"
+    assert paper.planner.redundancy == "least_norm"
+    (symmetric,), (bowl,) = ours.objects, paper.objects
+    assert symmetric.symmetry is not None
+    assert bowl == symmetric.model_copy(update={"symmetry": None})
+    for same in ("robot", "table", "teacher", "seed"):
         assert getattr(paper, same) == getattr(ours, same), same
 
 
