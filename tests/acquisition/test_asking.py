@@ -40,7 +40,11 @@ def evaluation(x_y_yaw, failed, segment=0, regions=REGIONS, frontier=()) -> Eval
     cause = np.where(failed, Cause.JOINT_LIMIT, Cause.SUCCESS).astype(np.uint8)[:, None]
     segment = np.where(failed, segment, -1).astype(np.int16)[:, None]
     outcomes = Outcomes(
-        cause, segment, np.zeros_like(segment, np.int8), np.ones(cause.shape, np.float32)
+        cause,
+        segment,
+        np.zeros_like(segment, np.int8),
+        np.ones(cause.shape, np.float32),
+        np.zeros_like(segment),
     )
     drawn = Evaluation(x_y_yaw, np.zeros(len(failed), dtype=np.int64), outcomes, frontier)
     region = drawn.partition(regions).index(x_y_yaw)

@@ -16,7 +16,7 @@ from drake_screw.demonstrations import write_recording
 
 Command = Callable[..., tuple[int, str, str]]
 
-CHANGES = ["coverage.epsilon=0.15", "coverage.beta=0.7"]
+CHANGES = ["objects.0.symmetry=null", "coverage.epsilon=0.15", "coverage.beta=0.7"]
 QUICK = [word for change in CHANGES for word in ("--set", change)]
 NAIVE = ["--set", "coverage.strategy=naive_pac"]
 

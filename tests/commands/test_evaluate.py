@@ -18,9 +18,12 @@ def test_evaluate_writes_a_code_for_each_instance_and_demonstration(
     )  # fmt: skip
     assert code == 0
     rows = [line.split(",") for line in Path("out.csv").read_text().splitlines()]
-    assert rows[0] == ["x", "y", "demo_01", "demo_02", "demo_03"]
+    names = ["demo_01", "demo_02", "demo_03"]
+    assert rows[0] == ["x", "y", *names, *(f"{name}:bowl" for name in names)]
     assert [row[:2] for row in rows[1:]] == [["0.8", "0.1"], ["0.9", "0.3"], ["1.07", "-0.23"]]
-    cells = [cell for row in rows[1:] for cell in row[2:]]
+    cells = [cell for row in rows[1:] for cell in row[2:5]]
+    turns = np.array([row[5:] for row in rows[1:]], dtype=float)
+    assert (np.abs(turns) <= np.pi).all()
     assert all(re.fullmatch(r"0:0|[1-9]:([1-7]|n|c)", cell) for cell in cells)
     assert rows[1][2] == "0:0", "a demonstration solves the place it was given at"
     assert "3 instances x 3 demonstrations" in out
