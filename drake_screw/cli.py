@@ -22,6 +22,7 @@ from drake_screw.commands import (
     look,
     report,
     run,
+    select,
     study,
 )
 from drake_screw.commands.log import set_up_logging
@@ -42,6 +43,7 @@ _VERBS: dict[str, tuple[Callable[..., None], str]] = {
     "execute": (execute.execute, execute.EXAMPLE),
     "export": (export.export, export.EXAMPLE),
     "evaluate": (evaluate.evaluate, evaluate.EXAMPLE),
+    "select": (select.select, select.EXAMPLE),
     "study": (study.study, study.EXAMPLE),
 }
 

@@ -1,12 +1,15 @@
 """The fewest candidates that between them solve enough instances of every region.
 
 That is a partial set cover. Candidates are known by what they solve of a table of instances, and by
-nothing else.
+nothing else. Sets are gone through (`cover_search`), in seconds as a rule. Where that is too much
+work, a linear program is solved (`cover_program`); where that takes too long, too, sets are gone
+through once more, for a minute.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from math import comb
 from typing import NamedTuple
 
@@ -14,13 +17,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.stats import binom
 
-from drake_screw.acquisition.cover_program import GaveUp, Program
+from drake_screw.acquisition.cover_program import Program
 from drake_screw.acquisition.cover_search import searched
-from drake_screw.acquisition.cover_table import Chosen, CoverTable
+from drake_screw.acquisition.cover_table import Chosen, CoverTable, GaveUp
 
-MOST_WORK = 2e10
-"""Sets of a size, times kinds of instances, that are gone through, which takes a minute at worst.
-Where there are more of them, a linear program is solved."""
+WORK = 2e9, 3e10
+"""Of going through sets before it is given up, at first and in the end; some seconds, and a minute.
+"""
 
 
 class Cover(NamedTuple):
@@ -51,13 +54,21 @@ def smallest_cover(
     small = greedy_cover(table, allowed, beyond=beyond)
     if small is None:
         return None
-    for size in range(1, len(small) + 1):
-        if not _few(table, size):
-            return _programmed(Program(table, allowed, beyond)) or Cover(small, False)
-        found = searched(table, size, allowed, beyond)
-        if found is not None:
-            return Cover(found, True)
-    return Cover(small, True)
+
+    def through(most_work: float) -> Chosen | None:
+        sizes = range(1, len(small) + 1)
+        found = (searched(table, size, allowed, beyond, most_work=most_work) for size in sizes)
+        return next(filter(None, found), None)
+
+    def programmed() -> Chosen | None:
+        program = Program(table, allowed, beyond)
+        size = program.smallest()
+        return None if size is None else program.best(size)
+
+    with suppress(GaveUp):
+        found = _first(through, programmed)
+        return Cover(small, False) if found is None else Cover(found, True)
+    return Cover(small, False)
 
 
 def best_of_size(
@@ -73,12 +84,13 @@ def best_of_size(
     Returns:
         The set; None if there is none, or looking for it would take too long.
     """
-    if _few(table, size):
-        return searched(table, size, table.samples, other_than)
-    try:
-        return Program(table, table.samples, other_than).best(size)
-    except GaveUp:
-        return None
+
+    def through(most_work: float) -> Chosen | None:
+        return searched(table, size, table.samples, other_than, most_work=most_work)
+
+    with suppress(GaveUp):
+        return _first(through, lambda: Program(table, table.samples, other_than).best(size))
+    return None
 
 
 def too_few(table: CoverTable, best: Chosen, tau: ArrayLike, delta: float) -> bool:
@@ -136,14 +148,16 @@ def greedy_cover(
     return tuple(sorted(chosen))
 
 
-def _few(table: CoverTable, size: int) -> bool:
-    return comb(table.D, size) * len(table.region) <= MOST_WORK
+def _first(
+    through: Callable[[float], Chosen | None], programmed: Callable[[], Chosen | None]
+) -> Chosen | None:
+    """The answer of the first way that gives one.
 
-
-def _programmed(program: Program) -> Cover | None:
-    try:
-        size = program.smallest()
-        found = None if size is None else program.best(size)
-    except GaveUp:
-        return None
-    return None if found is None else Cover(found, True)
+    Raises:
+        GaveUp: none does.
+    """
+    with suppress(GaveUp):
+        return through(WORK[0])
+    with suppress(GaveUp):
+        return programmed()
+    return through(WORK[1])

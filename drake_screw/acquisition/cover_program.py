@@ -1,4 +1,5 @@
-"""The best set of a size as a mixed-integer linear program, for when there are too many sets.
+"""The best set of a size as a mixed-integer linear program, for when there are too many sets
+to go through.
 
 There is a variable x_d for each candidate, 0 or 1: is it chosen; and a variable y_i for each kind
 of instance, at most 1 and at most the sum of x_d over the candidates that solve it: is it solved.
@@ -15,17 +16,13 @@ from numpy.typing import ArrayLike
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import csr_array
 
-from drake_screw.acquisition.cover_table import Chosen, CoverTable
+from drake_screw.acquisition.cover_table import Chosen, CoverTable, GaveUp
 from drake_screw.typing import Array
 
 TIME_LIMIT = 60.0
 """s, of one linear program. There are three for each answer, and more where sets are as good."""
 
 _OPTIMAL, _INFEASIBLE = 0, 2  # status of scipy.optimize.milp
-
-
-class GaveUp(Exception):
-    """HiGHS did not solve a linear program: for want of time mostly, or of numerical accuracy."""
 
 
 class Program:
@@ -64,7 +61,7 @@ class Program:
         """The size of the smallest sets; None if there is none.
 
         Raises:
-            GaveUp: HiGHS did not solve it.
+            GaveUp: HiGHS did not solve it; for want of time mostly, or of accuracy.
         """
         found = self._least(self._size)
         return None if found is None else len(found)
@@ -73,7 +70,7 @@ class Program:
         """The best set of a size, in the sense of `cover.smallest`; None if there is none.
 
         Raises:
-            GaveUp: HiGHS did not solve it.
+            GaveUp: HiGHS did not solve it; for want of time mostly, or of accuracy.
         """
         table = self._table
         among = [LinearConstraint(self._size[None], size, size)]

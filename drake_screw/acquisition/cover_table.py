@@ -15,6 +15,10 @@ Chosen = tuple[int, ...]
 """A set of candidates, by number, in rising order."""
 
 
+class GaveUp(Exception):
+    """Finding a set takes too long."""
+
+
 @dataclass(frozen=True, eq=False)
 class CoverTable:
     """Which of D candidates solve which instances; instances that agree are counted together.

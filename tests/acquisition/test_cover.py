@@ -10,9 +10,9 @@ from scipy.stats import binomtest
 
 from drake_screw.acquisition import cover, cover_program
 from drake_screw.acquisition.cover import Cover, best_of_size, greedy_cover, smallest_cover, too_few
-from drake_screw.acquisition.cover_program import GaveUp, Program
+from drake_screw.acquisition.cover_program import Program
 from drake_screw.acquisition.cover_search import searched
-from drake_screw.acquisition.cover_table import Chosen, CoverTable
+from drake_screw.acquisition.cover_table import Chosen, CoverTable, GaveUp
 
 
 class Problem:
@@ -77,7 +77,7 @@ def test_the_linear_program_finds_what_brute_force_finds(
     of = Problem(seed)
     size = 1 + seed % of.table.D
     assert Program(of.table, of.allowed, of.beyond).best(size) == of.best(size)
-    monkeypatch.setattr(cover, "MOST_WORK", 0)
+    monkeypatch.setattr(cover, "WORK", (0.0, 0.0))
     found, best = smallest_cover(of.table, of.allowed, beyond=of.beyond), of.smallest()
     assert found == (None if best is None else Cover(best, True))
 
@@ -150,7 +150,7 @@ def test_where_looking_would_take_too_long_the_answer_says_so(
     """Greedily, 0 comes first, which solves the most; then it takes three."""
     rows = [[1, 1, 0]] * 2 + [[1, 0, 1]] * 2 + [[0, 1, 0], [0, 0, 1]]
     table = CoverTable.of(np.hstack([rows, np.zeros((6, 1))]), [0] * 6, K=1)
-    monkeypatch.setattr(cover, "MOST_WORK", 0)
+    monkeypatch.setattr(cover, "WORK", (0.0, 0.0))
     assert smallest_cover(table, [0]) == Cover((1, 2), True)
 
     def give_up(*_: object) -> None:
