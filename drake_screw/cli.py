@@ -22,6 +22,7 @@ from drake_screw.commands import (
     look,
     report,
     run,
+    select,
     study,
 )
 from drake_screw.commands.instance_option import InstanceCommand
@@ -43,6 +44,7 @@ _VERBS: dict[str, tuple[Callable[..., None], str]] = {
     "execute": (execute.execute, execute.EXAMPLE),
     "export": (export.export, export.EXAMPLE),
     "evaluate": (evaluate.evaluate, evaluate.EXAMPLE),
+    "select": (select.select, select.EXAMPLE),
     "study": (study.study, study.EXAMPLE),
 }
 

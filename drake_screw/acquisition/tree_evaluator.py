@@ -55,6 +55,14 @@ class TreeEvaluator:
         """Go on from a round that was evaluated earlier, as if it had been just now."""
         self._frontier = evaluation.frontier
 
+    def start_over(self) -> None:
+        """The next round's demonstrations need not include those before: no cell stays cleared.
+
+        The whole area begins in the epoch after the last, so that delta is shared out as ever.
+        """
+        if self._frontier:
+            self._frontier = self._tree.start(max(cell.epoch for cell in self._frontier))
+
     def evaluate(
         self, round: int, demonstrations: tuple[Demonstration, ...], attempt: int
     ) -> tuple[Evaluation, Verdict]:

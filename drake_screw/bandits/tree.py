@@ -91,11 +91,18 @@ class CertifyOrSplit:
         if not 0.0 < self.level < 1.0:
             raise BanditError(f"level is {self.level}", remedy="Give a probability in (0, 1).")
 
-    def start(self) -> tuple[Cell, ...]:
-        """The frontier of the first round: the whole box, in epoch 1."""
+    def start(self, epoch: int = 1) -> tuple[Cell, ...]:
+        """The frontier of a first round: the whole box, uncleared."""
         d = self.dimension
         nothing = np.zeros((0, d)), np.zeros(0, dtype=bool)
-        return (Cell(np.zeros(d), np.ones(d), 0, 1, *nothing),)
+        return (Cell(np.zeros(d), np.ones(d), 0, epoch, *nothing),)
+
+    def cells(self, most: int) -> tuple[Cell, ...]:
+        """The cells in which splitting ends, or larger ones if there are more than `most`."""
+        cells = self.start()
+        while cells[0].volume > self.smallest and 2 * len(cells) <= most:
+            cells = tuple(half for cell in cells for half in cell.halves())
+        return cells
 
     def advance(self, frontier: tuple[Cell, ...]) -> tuple[Cell, ...]:
         """The frontier after a new demonstration: cleared cells stay so, the others start over."""
@@ -142,9 +149,10 @@ class CertifyOrSplit:
 
     def least(self, cell: Cell) -> int:
         """The least number of samples at which the cell clears with the failures it has."""
-        return int(clear_boundary(self._tau(cell), self._threshold(cell))(cell.s))
+        return int(clear_boundary(self.tau(cell), self._threshold(cell))(cell.s))
 
-    def _tau(self, cell: Cell) -> float:
+    def tau(self, cell: Cell) -> float:
+        """The failure probability below which a cell is cleared."""
         return min(self.goal.tau, self.level * self.smallest / cell.volume)
 
     def _threshold(self, cell: Cell) -> float:
@@ -167,7 +175,7 @@ class CertifyOrSplit:
         if cell.cleared or cell.s == 0:
             return False
         c = self._threshold(cell)
-        q = self._tau(cell) * self.goal.q / self.goal.tau
+        q = self.tau(cell) * self.goal.q / self.goal.tau
         if ln_e_flag(cell.n, cell.s, q) < c:
             return False
         return cell.volume <= self.smallest or self.bounds(cell)[0] >= 0.5

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
@@ -54,7 +56,7 @@ class RunConsole:
         """Show an event."""
         match event:
             case RegionsEvaluated():
-                self._live.update(self._task, detail=_detail(event))
+                self._live.update(self._task, detail=detail(event))
             case RoundStarted():
                 words = describe(event, self._regions)
                 self._live.update(self._task, description=words, detail="")
@@ -76,15 +78,18 @@ def show_event(event: Event, regions: Regions, console: Console) -> None:
 
 def show_summary(summary: RunSummary, console: Console) -> None:
     """The statement a finished run makes, and where to find the rest."""
-    console.print(
-        Panel(
-            Text("\n".join(summary.statement)),
-            title="certificate" if summary.certified else "no certificate",
-            border_style="green" if summary.certified else "yellow",
-            title_align="left",
-        )
-    )
+    console.print(certificate_panel(summary.statement, certified=summary.certified))
     console.print(Text(f"run directory: {summary.directory}"), soft_wrap=True)
+
+
+def certificate_panel(statement: Sequence[str], *, certified: bool) -> Panel:
+    """A statement's sentences in a frame."""
+    return Panel(
+        Text("\n".join(statement)),
+        title="certificate" if certified else "no certificate",
+        border_style="green" if certified else "yellow",
+        title_align="left",
+    )
 
 
 def round_table(verdict: Verdict, regions: Regions) -> Table:
@@ -115,7 +120,8 @@ def round_table(verdict: Verdict, regions: Regions) -> Table:
     return table
 
 
-def _detail(event: RegionsEvaluated) -> str:
+def detail(event: RegionsEvaluated) -> str:
+    """How far a round is, on one line."""
     rates = event.failures / np.maximum(event.samples, 1)
     drawn = f"{event.samples.sum():>9,} instances, "
     if len(rates) == 1:

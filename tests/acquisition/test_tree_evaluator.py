@@ -191,3 +191,26 @@ def test_a_small_pocket_of_failure_is_found_where_it_is() -> None:
     lower, _ = evaluation.partition(grid_regions(ONE, {})).bounds(verdict.region)
     assert not verdict.certified
     assert lower[0, :2].max() >= 0.8125
+
+
+def test_other_demonstrations_start_over() -> None:
+    rounds = evaluator(smallest=1 / 4, reach=2.0, seed=0, planner=Edges)
+    first, _ = rounds.evaluate(0, FIRST, 1)
+    assert any(cell.cleared for cell in first.frontier)
+    other = (demonstration_at("other", (0.8, 0.8, 0.0)),)
+    for epoch, demonstrations in enumerate((other, BOTH), start=2):
+        rounds.start_over()
+        found, verdict = rounds.evaluate(epoch, demonstrations, epoch)
+        assert verdict.certified == (demonstrations is BOTH)
+        assert {cell.epoch for cell in found.frontier} == {epoch}
+        drawn = np.bincount(found.region, minlength=len(found.frontier))
+        np.testing.assert_array_equal(drawn, verdict.samples)  # nothing is left of before
+
+
+def test_starting_over_at_the_start_changes_nothing() -> None:
+    rounds = evaluator()
+    rounds.start_over()
+    found, _ = rounds.evaluate(0, FIRST, 1)
+    expected, _ = evaluator().evaluate(0, FIRST, 1)
+    np.testing.assert_array_equal(found.x_y_yaw, expected.x_y_yaw)
+    assert {cell.epoch for cell in found.frontier} == {1}

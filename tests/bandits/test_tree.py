@@ -224,3 +224,22 @@ def test_refuses_answers_that_are_not_samples_of_the_cell(answer: CellPull) -> N
     tree = CertifyOrSplit(GOAL, 2, SMALLEST, 0.5)
     with pytest.raises(BanditError, match="a pull"):
         tree.decide(answer, tree.start())
+
+
+@pytest.mark.parametrize(("most", "count"), [(1000, 64), (64, 64), (63, 32), (1, 1)])
+def test_the_smallest_cells_are_a_partition_or_larger_ones_are(most: int, count: int) -> None:
+    tree = CertifyOrSplit(GOAL, 3, 1 / 64, 0.5)
+    cells = tree.cells(most)
+    assert len(cells) == count
+    assert sum(cell.volume for cell in cells) == 1.0
+    points = np.random.default_rng(0).random((500, 3))
+    inside = [((points >= cell.lower) & (points < cell.upper)).all(axis=1) for cell in cells]
+    assert (np.sum(inside, axis=0) == 1).all()
+    assert tree.tau(cells[0]) == pytest.approx(min(GOAL.tau, 0.5 * count / 64))
+
+
+def test_a_box_can_start_in_a_later_epoch() -> None:
+    tree = CertifyOrSplit(GOAL, 2, SMALLEST, 0.5)
+    (cell,) = tree.start(4)
+    assert (cell.epoch, cell.n, cell.cleared) == (4, 0, False)
+    assert tree.least(cell) > tree.least(tree.start()[0])

@@ -24,6 +24,7 @@ VERBS = [
     "execute",
     "export",
     "evaluate",
+    "select",
     "study",
 ]
 

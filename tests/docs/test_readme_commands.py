@@ -63,6 +63,7 @@ def test_shell_blocks_are_all_read() -> None:
         "execute",
         "export",
         "evaluate",
+        "select",
         "init",
         "list",
     } <= verbs

@@ -1,0 +1,56 @@
+"""``drake-screw select``: the fewest recordings of a folder that suffice."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from drake_screw.commands.options import (
+    JsonOption,
+    ModelOption,
+    ScenarioArgument,
+    SeedOption,
+    SetOption,
+    VerboseOption,
+    chosen_scenario,
+)
+from drake_screw.commands.output import Output
+
+EXAMPLE = "drake-screw select pouring --demonstrations recordings"
+
+
+def select(
+    scenario: ScenarioArgument,
+    demonstrations: Annotated[
+        Path, typer.Option(metavar="DIR", help="A folder of recordings.", show_default=False)
+    ],
+    instances: Annotated[
+        int,
+        typer.Option(
+            help="Instances in each region to compare sets of recordings on, at first.", min=1
+        ),
+    ] = 400,
+    model: ModelOption = None,
+    seed: SeedOption = None,
+    set_: SetOption = None,
+    json: JsonOption = None,
+    verbose: VerboseOption = False,
+) -> None:
+    """Find the fewest recordings that suffice, and certify them.
+
+    Sets are compared on a table of instances planned with all recordings; the chosen one is
+    certified on fresh instances, as in a run. Exit code 0: certified. 1: no set is. 2: bad
+    input.
+    """
+    out = Output(json)
+    from drake_screw.commands.select_console import SelectConsole, show_selection
+    from drake_screw.runs.selecting import select as select_recordings
+
+    loaded = chosen_scenario(scenario, set_, model, seed=seed)
+    with SelectConsole(out.console) as shown:
+        found = select_recordings(loaded, demonstrations, instances=instances, listener=shown)
+    show_selection(found, loaded.demonstrations.budget, out)
+    out.write(found)
+    raise typer.Exit(0 if found.certified else 1)

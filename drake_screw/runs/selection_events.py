@@ -1,0 +1,34 @@
+"""What a selection of recordings reports to its listener, in the order in which it happens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from drake_screw.acquisition import RegionsEvaluated
+from drake_screw.bandits import Verdict
+from drake_screw.runs.selection import Attempt
+from drake_screw.tasks import Regions
+
+
+@dataclass(frozen=True)
+class Step:
+    """How far a step is: what is done, and `done` of `total`, where that is known."""
+
+    words: str
+    done: int = 0
+    total: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """An attempt to certify a set has ended: number, from 1, and the verdict on its regions."""
+
+    number: int
+    attempt: Attempt
+    verdict: Verdict
+    regions: Regions
+
+
+Listener = Callable[[Step | RegionsEvaluated | Tried], None]
+"""Is called with every step, with each batch of instances to certify, and with each attempt."""
