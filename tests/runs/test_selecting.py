@@ -59,6 +59,7 @@ def outcomes(solved: Array) -> Outcomes:
         np.where(solved, -1, 0).astype(np.int16),
         none.astype(np.int8),
         solved.astype(np.float32),
+        np.zeros(solved.shape, dtype=np.int16),
     )
 
 
