@@ -19,7 +19,13 @@ from drake_screw.runs.run import new_run, open_run
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.scenario.schema import Scenario
 
-QUICK = ["coverage.beta=0.7", "coverage.epsilon=0.15", "seed=2", "demonstrations.budget=4"]
+QUICK = [
+    "objects.0.symmetry=null",
+    "coverage.beta=0.7",
+    "coverage.epsilon=0.15",
+    "seed=2",
+    "demonstrations.budget=4",
+]
 GRID = [*QUICK, "regions={grid: {x: 2, y: 2}}"]
 ADAPTIVE = [*QUICK, "regions={adaptive: {smallest: 0.0625}}"]
 ELSEWHERE = ["demonstrations.ask=densest_anywhere", "demonstrations.first=middle"]
@@ -65,7 +71,13 @@ def asked(events: list[Event]) -> list[Suggestion]:
     return [event.suggestion for event in events if isinstance(event, DemonstrationRequested)]
 
 
-@pytest.mark.parametrize("regions", [GRID, ADAPTIVE], ids=["grid", "adaptive"])
+@pytest.mark.parametrize(
+    "regions",
+    [
+        pytest.param(GRID, id="grid"),
+        pytest.param(ADAPTIVE, id="adaptive", marks=pytest.mark.slow),
+    ],
+)
 def test_a_run_with_another_rule_is_carried_on_and_told_again(regions, tmp_path: Path) -> None:
     scenario = load_scenario("pouring", [*regions, *ELSEWHERE])
     lived = carry_out(scenario, tmp_path / "whole")
@@ -90,6 +102,7 @@ def test_a_run_with_another_rule_is_carried_on_and_told_again(regions, tmp_path:
         assert entry["next_demonstration"]["region_name"] == event.regions.name(place.region)
 
 
+@pytest.mark.slow
 def test_recordings_that_cover_most_are_given_also_in_a_run_that_is_carried_on(
     covering: Scenario, tmp_path: Path
 ) -> None:
@@ -135,6 +148,7 @@ def test_a_recording_of_which_nothing_is_kept_works_nowhere(
     assert tried.works([], places).shape == (200, 0)
 
 
+@pytest.mark.slow
 def test_a_rule_of_ones_own_is_named_in_the_scenario_or_passed_in(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

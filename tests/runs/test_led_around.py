@@ -11,10 +11,9 @@ import pytest
 
 from drake_screw.assembly.preview import preview
 from drake_screw.assembly.setup import Setup
-from drake_screw.execution.timing import time_plan
 from drake_screw.planning import Cause, connection
 from drake_screw.runs.executions import execute
-from drake_screw.runs.run import new_run
+from drake_screw.runs.run import Run, new_run
 from drake_screw.runs.trajectory import write_trajectory
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.scenario.schema import Scenario
@@ -88,9 +87,9 @@ def test_a_planner_of_ones_own_may_give_plans(scenario: Scenario, setup: Setup) 
     found = setup.batch_planner.all_outcomes([lesson], PASSABLE[None], START)[0, 0]
     assert found.success
     plain = Setup(scenario, planner=lambda _: Own())
-    assert plain.plan(lesson, PASSABLE, found).success
+    assert plain.judged_plan(lesson, PASSABLE, found).success
     own = Setup(scenario, planner=lambda _: WithPlans())
-    assert own.plan(lesson, PASSABLE, found) == ("its own", int(found.variant))
+    assert own.judged_plan(lesson, PASSABLE, found) == ("its own", int(found.variant))
 
 
 def test_it_is_executed_and_exported(
@@ -98,8 +97,7 @@ def test_it_is_executed_and_exported(
 ) -> None:
     pytest.importorskip("ompl")
     lesson, arm = lesson_of(setup.workcell, PASSABLE), setup.workcell.arm
-    for module in ("executions", "trajectory"):
-        monkeypatch.setattr(f"drake_screw.runs.{module}.known_demonstrations", lambda _: (lesson,))
+    monkeypatch.setattr(Run, "demonstrations", (lesson,))
     new_run(scenario, tmp_path / "run", teacher=lambda _: SimpleNamespace())
     text = str(execute(tmp_path / "run", instance=AT, workers=1))
     assert "1 instances, 1 executed" in text
@@ -107,11 +105,11 @@ def test_it_is_executed_and_exported(
 
     exported = []
 
-    def keep(plan, poses, of):
-        exported.append(time_plan(plan, poses, of))
-        return exported[-1]
+    def keep(timed, of):
+        exported.append(timed)
+        return b""
 
-    monkeypatch.setattr("drake_screw.runs.trajectory.time_plan", keep)
+    monkeypatch.setattr("drake_screw.runs.trajectory.find", lambda *_: keep)
     write_trajectory(tmp_path / "run", AT, "npz", tmp_path / "plan.npz")
     _, q, _ = exported[0].sampled(5e-3)
     np.testing.assert_allclose(q[0], START, atol=1e-9)

@@ -86,8 +86,9 @@ def test_sclerp_agrees_with_pytransform3d(A: np.ndarray, V: np.ndarray, s: float
 @many
 @given(poses(), twists(), parts)
 def test_sclerp_position_is_that_of_sclerp(A: np.ndarray, V: np.ndarray, s: float) -> None:
+    """Up to a picometre: a turn of 1e-12 rad counts as none."""
     B = exp(V) @ A
-    np.testing.assert_allclose(sclerp_position(A, B, s), sclerp(A, B, s)[:3, 3], atol=1e-14)
+    np.testing.assert_allclose(sclerp_position(A, B, s), sclerp(A, B, s)[:3, 3], atol=1e-12)
 
 
 @many
