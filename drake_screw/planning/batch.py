@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import logging
 import os
 from collections.abc import Sequence
@@ -16,7 +17,9 @@ from drake_screw.planning.compiled import Answers, Kernel, Order, Settings
 from drake_screw.planning.contract import Redundancy
 from drake_screw.planning.outcomes import Outcomes, Plan, concatenate
 from drake_screw.planning.paths import joint_paths
+from drake_screw.planning.plan_checker import check_of
 from drake_screw.planning.questions import check_choice, check_question, failed_start
+from drake_screw.planning.swept import SweptChecker
 from drake_screw.planning.symmetry import Symmetries
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import translation_distance
@@ -44,6 +47,7 @@ class BatchPlanner:
         redundancy: what more joints than six do with the motion that the end effector leaves free.
 
     Attributes:
+        checker: of what successes must not touch; None where collisions are not looked at.
         evaluations: of dq/ds = J^+ V so far, for benchmarks.
     """
 
@@ -63,8 +67,15 @@ class BatchPlanner:
         self.symmetries = symmetries or Symmetries()
         self.threads = threads or os.cpu_count() or 1
         self.evaluations, self.redundancy = 0, redundancy
+        self.checker: SweptChecker | None = None
         settings = Settings(tolerance=tolerance or Settings.tolerance, redundancy=redundancy)
         self._kernel = Kernel(chain.screws, chain.home, chain.lower, chain.upper, settings)
+
+    def checked(self, checker: SweptChecker) -> BatchPlanner:
+        """The same planner, whose successes touch nothing by that checker."""
+        planner = copy.copy(self)
+        planner.checker, planner.evaluations = checker, 0
+        return planner
 
     @property
     def compiled(self) -> bool:
@@ -290,6 +301,7 @@ class BatchPlanner:
             run=run,
             begins=columns.begins,
             place=columns.poses,
+            check=self.checker and check_of(self.checker, columns.begins, q_start),
             threads=self.threads,
         )
         self.evaluations += EVALUATIONS_PER_STEP * sum(int(a.steps.sum()) for a in answers)

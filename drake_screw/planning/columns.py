@@ -124,6 +124,7 @@ class Columns:
             answers.joint,
             np.where(away, np.float32(0.0), answers.fraction),
             np.broadcast_to(self._numbers, answers.cause.shape),
+            answers.pair,
         )
 
     def outcomes(self, answers: Answers) -> Outcomes:
@@ -149,6 +150,7 @@ class Columns:
             answers.joint[:, 0],
             np.where(away, np.float32(0.0), answers.fraction[:, 0]),
             self._numbers[column],
+            answers.pair[:, 0],
         )
 
     def followed(

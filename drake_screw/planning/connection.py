@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import itertools
 import logging
 import threading
 from collections.abc import Iterator
@@ -24,7 +23,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from drake_screw.planning.approach import straight
 from drake_screw.planning.plan_checker import PlanChecker
 from drake_screw.planning.rounding import rounded
 from drake_screw.typing import Array
@@ -34,10 +32,6 @@ ITERATIONS = 300
 
 RANGE = 0.8
 """rad (or m), Euclidean, by which a tree grows towards a sample at once."""
-
-COARSE = 4.0
-"""Times the checker's spacing, between configurations that are asked about while the trees grow.
-Where the way found touches something in between, they grow once more, with the spacing itself."""
 
 SHORTCUTS = 100
 """Straight motions that are tried between two points of a way, to make it shorter."""
@@ -97,9 +91,7 @@ def connect(
     arm = checker.workcell.arm
     if (arm.margin(ends) < 0.0).any() or checker.workcell.collides(ends, X_WO).any():
         return None
-    corners = _tree_path(checker, ends, X_WO, seed, iterations, COARSE)
-    if corners is not None and not checker.free(_through(corners), X_WO):
-        corners = _tree_path(checker, ends, X_WO, seed, iterations, 1.0)
+    corners = _tree_path(checker, ends, X_WO, seed, iterations)
     if corners is None:
         return None
     ways = _shorter_and_shorter(checker, corners, X_WO, np.random.default_rng(seed))
@@ -117,14 +109,12 @@ def _tree_path(
     X_WO: Array,
     seed: int,
     iterations: int,
-    coarse: float,
 ) -> Array | None:
     """The corners (c, n) of a free way, as RRT-Connect finds it; None if it does not.
 
     Args:
         checker, X_WO, seed, iterations: as `connect` has them.
         ends: (2, n) rad or m, start and goal.
-        coarse: as `PlanChecker.free` has it.
     """
     base, geometric = (importlib.import_module(f"ompl.{name}") for name in ("base", "geometric"))
     arm, n = checker.workcell.arm, ends.shape[1]
@@ -133,7 +123,7 @@ def _tree_path(
         """Asks about a whole motion at once."""
 
         def checkMotion(self, a: Any, b: Any) -> bool:
-            return checker.free(straight(_joints(a, n), _joints(b, n))[0], X_WO, coarse)
+            return checker.free(np.stack([_joints(a, n), _joints(b, n)]), X_WO)
 
     space = base.RealVectorStateSpace(n)
     bounds = base.RealVectorBounds(n)
@@ -182,11 +172,6 @@ def _quiet(seed: int) -> Iterator[None]:
             util.setLogLevel(level)
 
 
-def _through(corners: Array) -> Array:
-    """(m, n) points through corners (c, n), near to one another as those of a plan."""
-    return np.concatenate([straight(a, b)[0] for a, b in itertools.pairwise(corners)])
-
-
 def _joints(state: Any, n: int) -> Array:
     """Joint positions (n,) of OMPL's state."""
     return np.array([state[i] for i in range(n)])
@@ -209,6 +194,6 @@ def _shorter_and_shorter(
             continue
         share = 1.0 - (ends[[i, j]] - there) / lengths[[i, j]]
         a, b = corners[[i, j]] + share[:, None] * (corners[[i + 1, j + 1]] - corners[[i, j]])
-        if checker.free(straight(a, b)[0], X_WO):
+        if checker.free(np.stack([a, b]), X_WO):
             ways.append(np.concatenate([corners[: i + 1], [a, b], corners[j + 1 :]]))
     return ways

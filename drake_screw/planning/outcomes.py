@@ -36,6 +36,8 @@ class Outcomes:
             from 0: turns of symmetric bodies (see `Symmetries`), and where the approach is free
             all of them again from other configurations (see `BatchPlanner`). Of a failure it is the
             one that came furthest.
+        pair: which pair of bodies touches, an index of `Workcell.pairs`; -1 where none does, or
+            where it is not known.
     """
 
     cause: NDArray[np.uint8]
@@ -43,6 +45,12 @@ class Outcomes:
     joint: NDArray[np.int8]
     fraction: NDArray[np.float32]
     variant: NDArray[np.int16]
+    pair: NDArray[np.int16] = field(default=None)  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        """Without pairs, none is known."""
+        if self.pair is None:
+            object.__setattr__(self, "pair", np.full(self.cause.shape, -1, dtype=np.int16))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -97,6 +105,7 @@ class Outcomes:
             change(self.joint),
             change(self.fraction),
             change(self.variant),
+            change(self.pair),
         )
 
     @property
@@ -117,6 +126,7 @@ class Outcomes:
         changed.joint[where] = values.joint
         changed.fraction[where] = values.fraction
         changed.variant[where] = values.variant
+        changed.pair[where] = values.pair
         return changed
 
     def __getitem__(self, index: Any) -> Outcomes:
@@ -147,6 +157,7 @@ def concatenate(parts: Iterable[Outcomes], axis: int = 0) -> Outcomes:
         np.concatenate([p.joint for p in parts], axis=axis),
         np.concatenate([p.fraction for p in parts], axis=axis),
         np.concatenate([p.variant for p in parts], axis=axis),
+        np.concatenate([p.pair for p in parts], axis=axis),
     )
 
 

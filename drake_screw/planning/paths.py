@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from drake_screw.planning.compiled import Trace
+from drake_screw.planning.compiled import Trace, dense_output
 from drake_screw.planning.outcomes import Cause, Outcomes, Plan
 from drake_screw.typing import Array
 
@@ -49,7 +49,7 @@ def joint_paths(
     s = trace.s[step, 0] + u * (trace.s[step, 1] - trace.s[step, 0])
     first = np.concatenate([[0], np.cumsum(parts)])[trace.first]
     plans = []
-    for i, outcome in enumerate(outcomes[j] for j in range(len(trace.steps))):
+    for i, outcome in enumerate(outcomes[j] for j in range(len(trace.first) - 1)):
         own = slice(first[i], first[i + 1])
         path = np.concatenate([q_start[i : i + 1], q[own]])
         if outcome.cause == Cause.JOINT_LIMIT:
@@ -60,14 +60,6 @@ def joint_paths(
         along = np.concatenate([[0.0], s[own]])
         plans.append(Plan(path, segment, along, outcome, guides[i], angles[i]))
     return tuple(plans)
-
-
-def dense_output(q: Array, u: Array) -> Array:
-    """Joint positions (m, n) in steps (m, 5, n) of a trace, at fractions u (m,) of them."""
-    q0, q1, d0, d1, bend = np.moveaxis(q, 1, 0)
-    u = u[:, None]
-    v = 1.0 - u
-    return q0 + u * (q1 - q0) + u * v * (v * (d0 - q1 + q0) + u * (q1 - q0 - d1) + u * v * bend)
 
 
 def _parts(trace: Trace) -> Array:

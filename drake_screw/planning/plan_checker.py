@@ -8,19 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from drake_screw.planning.clearance import bubbles_of
+from drake_screw.planning.compiled import Check, Touches, Trace
 from drake_screw.planning.outcomes import Plan
+from drake_screw.planning.swept import SweptChecker, Touched, lines
 from drake_screw.robot import Workcell
 from drake_screw.typing import Array
-
-SPACING = 0.01
-"""m, at most, that the arm moves between two configurations that Drake is asked about."""
-
-SLACK = 2e-3
-"""m, by which the way of a part of the arm between two points of a plan may be longer than the
-straight line."""
-
-CHUNK = 8192  # configurations whose bounds are computed together
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,20 +46,21 @@ class Hit:
 
 
 class PlanChecker:
-    """Finds the collisions of plans in a workcell.
-
-    Bounds on clearance (`planning.clearance`) show which stretches of a path are surely free. On
-    the rest, `Workcell.collides` is asked about configurations at most SPACING apart, for all
-    paths in one parallel call.
+    """Finds the collisions of plans in a workcell, all along them: see `planning.swept`.
 
     Args:
         workcell: robot, table and objects.
+        clearance: m, that they have to keep.
     """
 
-    def __init__(self, workcell: Workcell) -> None:
+    def __init__(self, workcell: Workcell, clearance: float = 0.0) -> None:
         self.workcell = workcell
-        self.bubbles = bubbles_of(workcell)
-        self.asked = 0
+        self.swept = SweptChecker(workcell, clearance)
+
+    @property
+    def asked(self) -> int:
+        """Configurations that Drake was asked about so far."""
+        return self.swept.asked
 
     def first_collisions(self, plans: Sequence[Plan], X_WO: ArrayLike) -> Collisions:
         """Check plans.
@@ -76,92 +69,78 @@ class PlanChecker:
             plans: N of the batch planner's.
             X_WO: (N, k, 4, 4) the objects of each.
         """
-        N, X_WO = len(plans), np.asarray(X_WO, dtype=float)
-        n = self.workcell.arm.n
-        result = Collisions(
-            np.zeros(N, dtype=bool), np.full(N, -1), np.ones(N), np.full((N, n), np.nan)
-        )
+        N, n = len(plans), self.workcell.arm.n
         if N == 0:
-            return result
-        q = np.concatenate([plan.q for plan in plans])
-        segment = np.concatenate([plan.segment for plan in plans])
-        s = np.concatenate([plan.s for plan in plans])
-        owner = np.repeat(np.arange(N), [len(plan.q) for plan in plans])
-        asked, step, share = self._in_doubt(q, X_WO, owner)
-        hit = np.flatnonzero(self._collide(asked, X_WO[owner[step]]))
-        found, first = np.unique(owner[step[hit]], return_index=True)
-        at = hit[first]
-        where, into = step[at], share[at]
-        began = np.where(segment[where] == segment[where + 1], s[where], 0.0)
-        result.collides[found] = True
-        result.segment[found] = segment[where + 1]
-        result.fraction[found] = began + into * (s[where + 1] - began)
-        result.q[found] = asked[at]
-        return result
+            none = np.zeros(0)
+            return Collisions(none.astype(bool), none.astype(int), none, np.zeros((0, n)))
+        found = self._along([plan.q for plan in plans], np.asarray(X_WO, dtype=float))
+        segment, fraction = np.full(N, -1), np.ones(N)
+        for i in np.flatnonzero(found.touches).tolist():
+            plan, step = plans[i], int(found.step[i])
+            end = min(step + 1, len(plan.q) - 1)
+            began = plan.s[step] if plan.segment[step] == plan.segment[end] else 0.0
+            segment[i] = plan.segment[end]
+            fraction[i] = began + found.place[i] * (plan.s[end] - began)
+        return Collisions(found.touches, segment, fraction, found.q)
 
     def explain(self, plan: Plan, X_WO: ArrayLike) -> Hit | None:
         """The first collision of a plan among objects X_WO (k, 4, 4), if there is one."""
         X_WO = np.asarray(X_WO, dtype=float)
-        found = self.first_collisions([plan], X_WO[None])
-        if not found.collides[0]:
+        touched = self._along([plan.q], X_WO[None])
+        if not touched.touches[0]:
             return None
-        bodies = self.workcell.colliding_bodies(found.q[0], X_WO)
+        found, pair = self.first_collisions([plan], X_WO[None]), int(touched.pair[0])
+        if pair >= 0:
+            bodies = (self.workcell.touching(pair),)
+        else:
+            bodies = self.workcell.colliding_bodies(found.q[0], X_WO, self.swept.clearance)
         return Hit(int(found.segment[0]), float(found.fraction[0]), bodies)
 
-    def free(self, q: Array, X_WO: Array, coarse: float = 1.0) -> bool:
-        """Whether a path touches nothing, its first point left aside.
+    def free(self, q: Array, X_WO: Array) -> bool:
+        """Whether a path touches nothing.
 
         Args:
-            q: (m, n) its points, near to one another as those of a plan.
+            q: (m, n) its points; straight lines connect them.
             X_WO: (k, 4, 4) the objects.
-            coarse: times SPACING is how far apart the configurations are that are asked about.
         """
-        alone = np.zeros(len(q), dtype=int)
-        asked, _, _ = self._in_doubt(q, X_WO[None], alone, coarse)
-        unknown = np.ones(len(asked), dtype=bool)
-        for every in (16, 4, 1):  # what collides does so over a stretch, most often
-            some = np.flatnonzero(unknown[::every]) * every
-            if self._collide(asked[some], X_WO).any():
-                return False
-            unknown[some] = False
-        return True
+        return not bool(self._along([q], X_WO[None]).touches[0])
 
-    def _in_doubt(
-        self, q: Array, X_WO: Array, owner: Array, coarse: float = 1.0
-    ) -> tuple[Array, Array, Array]:
-        """Configurations (p, n) that Drake is to be asked about, `coarse` times SPACING apart.
+    def _along(self, paths: Sequence[Array], X_WO: Array) -> Touched:
+        steps = [lines(q) for q in paths]
+        first = np.cumsum([0, *map(len, steps)], dtype=np.int64)
+        return self.swept.along(np.concatenate(steps), first, X_WO)
 
-        Takes what `_bounds` does; also returns the step (p,) that each lies in, and how much of it
-        is done there (p,), up to 1.
-        """
-        uncertain, travel = self._bounds(q, X_WO, owner)
-        step = np.flatnonzero(uncertain)
-        parts = np.maximum(np.ceil(travel[step] / (coarse * SPACING)).astype(int), 1)
-        part = 1 + np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-        step, share = np.repeat(step, parts), part / np.repeat(parts, parts)
-        return q[step] + share[:, None] * (q[step + 1] - q[step]), step, share
 
-    def _collide(self, q: Array, X_WO: Array) -> Array:
-        self.asked += len(q)
-        return self.workcell.collides(q, X_WO) if len(q) else np.zeros(0, dtype=bool)
+def check_of(checker: SweptChecker, begins: NDArray[np.int64], q_start: Array) -> Check:
+    """A checker of plans for the kernel.
 
-    def _bounds(self, q: Array, X_WO: Array, owner: Array) -> tuple[Array, Array]:
-        """Which of the steps between successive points are not surely free, and their travel in m.
+    Args:
+        checker: of the workcell.
+        begins: (C,) the configuration that each column begins at; 0 for the arm's start, from which
+            the others' first guiding poses are approached along a straight line in joint space.
+        q_start: (n,) rad or m, the arm's start.
+    """
 
-        Args:
-            q: (M, n) points of plans, one plan after the other.
-            X_WO: (N, k, 4, 4) the objects of each plan.
-            owner: (M,) the plan of each point.
+    def check(X_WO: Array, trace: Trace) -> Touches:
+        instance, column = trace.plan.T
+        q, s, segment, first = trace.q, trace.s, trace.segment, trace.first
+        away = begins[column] > 0
+        if away.any():
+            owner = np.repeat(np.arange(len(away)), np.diff(first))
+            to_come = away[owner] & (segment == 0)
+            ends = np.append((owner[1:] != owner[:-1]) | (segment[1:] != 0), True)
+            approach, kept = to_come & ends, ~to_come | ends
+            q, s = q.copy(), s.copy()
+            there = q[approach, 1]
+            q[approach] = 0.0
+            q[approach, 0], q[approach, 1] = q_start, there
+            q[approach, 2] = q[approach, 3] = there - q_start
+            s[approach] = 0.0, 1.0
+            q, s, segment = q[kept], s[kept], segment[kept]
+            first = np.concatenate([[0], np.cumsum(np.bincount(owner[kept], minlength=len(away)))])
+        found = checker.along(q, first, X_WO[instance])
+        step = first[:-1] + np.maximum(found.step, 0)
+        fraction = s[step, 0] + found.place * (s[step, 1] - s[step, 0])
+        return Touches(found.touches, segment[step], fraction, found.pair)
 
-        Returns:
-            (M - 1,) bool, False between two plans; (M - 1,) m.
-        """
-        uncertain, travel = np.zeros(len(q) - 1, dtype=bool), np.zeros(len(q) - 1)
-        for first in range(0, len(q) - 1, CHUNK):
-            steps, points = slice(first, first + CHUNK), slice(first, first + CHUNK + 1)
-            distance, p = self.bubbles(q[points], X_WO[owner[points]])
-            moved = np.linalg.norm(np.diff(p, axis=0), axis=-1) + SLACK
-            free = distance[1:] + distance[:-1] > moved
-            uncertain[steps] = ~free.all(axis=-1)
-            travel[steps] = moved.max(axis=-1, initial=0.0)
-        return uncertain & (owner[1:] == owner[:-1]), travel
+    return check

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -109,33 +111,71 @@ class Workcell:
             full[..., first + 4 : first + 7] = X_WO[..., i, :3, 3]
         return full
 
-    def collides(self, q: ArrayLike, X_WO: ArrayLike) -> Array:
+    @cached_property
+    def pairs(self) -> tuple[tuple[BodyIndex, BodyIndex], ...]:
+        """Bodies that could touch, one of them the robot's, as far as Drake looks at them."""
+        shaped = [
+            i
+            for i in map(BodyIndex, range(self.plant.num_bodies()))
+            if len(self.plant.GetCollisionGeometriesForBody(self.plant.get_body(i))) > 0
+        ]
+        robot = {i for i in shaped if self.checker.IsPartOfRobot(i)}
+        return tuple(
+            (a, b)
+            for a, b in itertools.combinations(shaped, 2)
+            if (a in robot or b in robot) and not self.checker.IsCollisionFilteredBetween(a, b)
+        )
+
+    def touching(self, pair: int) -> tuple[str, str]:
+        """Names of the two bodies of one of `pairs`, the robot's first."""
+        a, b = self.pairs[pair]
+        if not self.checker.IsPartOfRobot(a):
+            a, b = b, a
+        return self.plant.get_body(a).name(), self.plant.get_body(b).name()
+
+    def keeping(self, clearance: float) -> SceneGraphCollisionChecker:
+        """A checker for which nearer than a clearance in m is a collision."""
+        checker = self.checker.Clone()
+        checker.SetPaddingAllRobotEnvironmentPairs(clearance)
+        checker.SetPaddingAllRobotRobotPairs(clearance)
+        return checker
+
+    def collides(
+        self,
+        q: ArrayLike,
+        X_WO: ArrayLike,
+        *,
+        checker: SceneGraphCollisionChecker | None = None,
+    ) -> Array:
         """Whether the robot touches itself, the table or an object.
 
         Args:
             q: (m, n).
             X_WO: (k, 4, 4) or (m, k, 4, 4).
+            checker: by which; without clearance if None.
 
         Returns:
             (m,) bool.
         """
         full = self.positions(q, X_WO)
         parallel = len(full) >= MANY
-        free = self.checker.CheckConfigsCollisionFree(list(full), parallelize=parallel)
+        free = (checker or self.checker).CheckConfigsCollisionFree(list(full), parallelize=parallel)
         return ~np.array(free, dtype=bool)
 
-    def colliding_bodies(self, q: ArrayLike, X_WO: ArrayLike) -> tuple[tuple[str, str], ...]:
-        """Names of the pairs of bodies that touch at one configuration q (n,)."""
-        clearance = self.checker.CalcRobotClearance(self.positions(q, X_WO), 0.0)
+    def colliding_bodies(
+        self, q: ArrayLike, X_WO: ArrayLike, clearance: float = 0.0
+    ) -> tuple[tuple[str, str], ...]:
+        """Names of the pairs of bodies that touch, or are nearer than a clearance in m, at q (n,)."""
+        found = self.checker.CalcRobotClearance(self.positions(q, X_WO), clearance)
         name = [
             (self.plant.get_body(a).name(), self.plant.get_body(b).name())
             for a, b, distance in zip(
-                clearance.robot_indices(),
-                clearance.other_indices(),
-                clearance.distances(),
+                found.robot_indices(),
+                found.other_indices(),
+                found.distances(),
                 strict=True,
             )
-            if distance < 0.0
+            if distance < clearance
         ]
         return tuple(dict.fromkeys(name))
 

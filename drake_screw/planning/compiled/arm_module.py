@@ -52,10 +52,10 @@ def prepare(b, rows, q_start, start):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def run(b, lanes, queue, rows, problem, answers):
-    """Works through the units of work in a queue."""
+def run(b, lanes, queue, units, rows, problem, answers):
+    """Works through all units of work."""
     for i in range(LANES):
-        next_unit(i, lanes, queue)
+        next_unit(i, lanes, queue, units)
         if lanes[i, 0] >= 0:
             begin_plan(b, i, lanes, rows, problem)
     while True:
@@ -73,7 +73,7 @@ def run(b, lanes, queue, rows, problem, answers):
         blend_6(b)
         arrive(b)
         judge(b)
-        if settle(b, lanes, queue, rows, problem, answers) == 0:
+        if settle(b, lanes, queue, units, rows, problem, answers) == 0:
             return
 '''
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from drake_screw.planning.compiled.lanes import Answers, Bounds, Places, Problem
 from drake_screw.planning.compiled.link_frames import link_frames
 from drake_screw.planning.compiled.rows import LANES, Rows
 from drake_screw.planning.compiled.step_code import Settings
-from drake_screw.planning.compiled.trace import Trace, new_trace
+from drake_screw.planning.compiled.trace import ALL, SUCCESSES, Trace, new_trace
 from drake_screw.planning.outcomes import Cause
 
 Array = NDArray[np.float64]
@@ -30,11 +30,34 @@ LIKELY = 4
 TRACED = 256
 """Plans that a thread takes at a time where their steps are written down."""
 
+ROOM = 64
+"""Steps of a plan that room is kept for, at first."""
+
 Order = Callable[[Array], NDArray[np.int64]]
 """From object poses (N, k, 4, 4) to the order (N, D) in which demonstrations are tried."""
 
 Place = Callable[[Array], Array]
 """From object poses (N, k, 4, 4) to the frames (N, m, 4, 4) that guiding poses belong to."""
+
+
+class Touches(NamedTuple):
+    """The first touches of P plans: arrays (P,).
+
+    Attributes:
+        touches: whether a plan does; nothing is said of the others.
+        segment: in which it does, from 0.
+        fraction: how much of that is done by then.
+        pair: of bodies that touch.
+    """
+
+    touches: NDArray[np.bool_]
+    segment: NDArray[np.int64]
+    fraction: Array
+    pair: NDArray[np.int64]
+
+
+Check = Callable[[Array, Trace], Touches]
+"""From object poses (N, k, 4, 4) and plans among them to which of the plans touch something."""
 
 
 def _as_they_are(X_WO: Array) -> Array:
@@ -90,6 +113,7 @@ class Kernel:
         run: int = 1,
         begins: NDArray[np.int64] | None = None,
         place: Place = _as_they_are,
+        check: Check | None = None,
         threads: int | None = None,
     ) -> list[Answers]:
         """Plans for N instances with D demonstrations.
@@ -105,22 +129,41 @@ class Kernel:
             begins: (D,) which start configuration each demonstration begins at; the only one if
                 None.
             place: takes X_WO (m, k, 4, 4) to the frames that `objects` are indices of.
+            check: says which successes touch something: those are COLLISION, and the run goes on.
+                It is called from several threads at once.
             threads: to use; all processors if None.
 
         Returns:
             Answers (m, D) for successive instances.
         """
         N, D = len(X_WO), len(X_OE)
-        nothing = new_trace(np.zeros(0, dtype=np.int64), self._n)
+        nothing = new_trace(self._n)
         if N == 0 or D == 0:
             return [_unanswered(N, D, nothing)]
         problem = self._problem(X_OE, objects, q_start, begins)
         as_given = np.arange(D)[None]
 
         def work(part: slice) -> Answers:
-            answers = _unanswered(part.stop - part.start, D, nothing)
-            tried = as_given if order is None else np.ascontiguousarray(order(X_WO[part]))
-            self._run(problem, place(X_WO[part]), tried, run, answers)
+            own = X_WO[part]
+            answers = _unanswered(len(own), D, nothing)
+            tried = as_given if order is None else np.ascontiguousarray(order(own))
+            ends = np.arange(run, len(own) * D + 1, run)
+            units, frames = np.column_stack([ends - run, ends]), place(own)
+            if check is None:
+                self._run(problem, frames, tried, units, answers)
+                return answers
+            while len(units) > 0:
+                trace = self._traced(SUCCESSES, problem, frames, tried, units, answers)
+                found = check(own, trace)
+                i, d = trace.plan[found.touches].T
+                answers.cause[i, d] = Cause.COLLISION
+                answers.segment[i, d] = found.segment[found.touches]
+                answers.fraction[i, d] = found.fraction[found.touches]
+                answers.pair[i, d] = found.pair[found.touches]
+                rank = (np.broadcast_to(tried, (len(own), D))[i] == d[:, None]).argmax(axis=1)
+                following = i * D + rank + 1
+                units = np.column_stack([following, -(-following // run) * run])
+                units = units[following % run > 0]
             return answers
 
         likely = D if run == 1 else D // run * LIKELY
@@ -142,8 +185,7 @@ class Kernel:
     ) -> list[Answers]:
         """Plans for N instances, each with one demonstration, and the steps that were taken.
 
-        A first pass counts the steps and a second one writes them down: a lane's arithmetic does
-        not depend on its neighbours, so that both take the same, which are also those of `plan`.
+        A lane's arithmetic does not depend on its neighbours, so that they are also those of `plan`.
 
         Args:
             X_OE, objects, X_WO, q_start, begins, place, threads: as for `plan`.
@@ -156,13 +198,13 @@ class Kernel:
         tried = np.ascontiguousarray(which, dtype=np.int64)[:, None]
 
         def work(part: slice) -> Answers:
-            places = np.zeros(part.stop - part.start, dtype=np.int64)
-            for _ in range(2):
-                trace = new_trace(places, self._n)
-                answers = _unanswered(len(places), len(X_OE), trace)
-                self._run(problem, place(X_WO[part]), tried[part], 1, answers)
-                places = trace.steps
-            return answers.part((np.arange(len(places))[:, None], tried[part]))
+            own = tried[part]
+            N, D = len(own), len(X_OE)
+            answers = _unanswered(N, D, new_trace(self._n))
+            units = np.arange(N)[:, None] + np.array([0, 1])
+            trace = self._traced(ALL, problem, place(X_WO[part]), own, units, answers)
+            trace = trace.of(np.argsort(trace.plan[:, 0]))
+            return answers.part((np.arange(N)[:, None], own))._replace(trace=trace)
 
         traced = _share(work, _parts(len(X_WO), TRACED), threads)
         arm_module.mark_compiled(self._module)
@@ -187,19 +229,46 @@ class Kernel:
             self._bounds,
         )
 
+    def _traced(
+        self,
+        keep: int,
+        problem: Problem,
+        frames: Array,
+        order: NDArray[np.int64],
+        units: NDArray[np.int64],
+        answers: Answers,
+    ) -> Trace:
+        """As `_run`; the plans whose steps are to be kept, in the order in which they ended."""
+        most, per_plan = ROOM, 1
+        while True:
+            trace = new_trace(self._n, keep, plans=len(units), most=most, times=per_plan)
+            self._run(problem, frames, order, units, answers._replace(trace=trace))
+            if trace.count[2] == 0:
+                return trace.done()
+            most, per_plan = 4 * most, 4 * per_plan
+
     def _run(
         self,
         problem: Problem,
-        X_WO: Array,
+        frames: Array,
         order: NDArray[np.int64],
-        size: int,
+        units: NDArray[np.int64],
         answers: Answers,
     ) -> None:
-        """Fill in answers for instances, in runs of so many demonstrations."""
-        problem = problem._replace(X_BO=np.ascontiguousarray(self._X_BW @ X_WO), order=order)
-        queue = np.array([0, len(X_WO) * order.shape[1] // size, size])
-        b, lanes = np.zeros(self._count * LANES), np.zeros((LANES, 7), dtype=np.int64)
-        self._module.run(b, lanes, queue, self._rows, problem, answers)
+        """Fill in answers.
+
+        Args:
+            problem: what all instances have in common.
+            frames: (N, k, 4, 4) that guiding poses belong to.
+            order: (N or 1, D) of demonstrations.
+            units: (U, 2) items of work that end with the first success: the first of each, and the
+                one after its last. An item is an instance's number times D, plus a rank.
+            answers: to fill in.
+        """
+        problem = problem._replace(X_BO=np.ascontiguousarray(self._X_BW @ frames), order=order)
+        b, lanes = np.zeros(self._count * LANES), np.zeros((LANES, 8), dtype=np.int64)
+        queue = np.zeros(1, dtype=np.int64)
+        self._module.run(b, lanes, queue, units, self._rows, problem, answers)
 
     def _start(self, q_start: Array) -> Array:
         """What lanes load to start a plan: see `lanes.load_start`."""
@@ -216,6 +285,7 @@ def _unanswered(N: int, D: int, trace: Trace) -> Answers:
         np.full((N, D), -1, dtype=np.int16),
         np.full((N, D), -1, dtype=np.int8),
         np.zeros((N, D), dtype=np.float32),
+        np.full((N, D), -1, dtype=np.int16),
         np.zeros((N, D), dtype=np.int32),
         trace,
     )

@@ -31,7 +31,7 @@ from drake_screw.planning.compiled.rows import (
     TARGET,
     at,
 )
-from drake_screw.planning.compiled.trace import Trace, end_trace, trace_step
+from drake_screw.planning.compiled.trace import ALL, NOTHING, Trace, keep_plan, trace_step
 from drake_screw.planning.contract import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from drake_screw.planning.outcomes import Cause
 
@@ -95,12 +95,16 @@ class Places(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """(N, D) arrays, by instance and demonstration, and the trace of the steps."""
+    """(N, D) arrays, by instance and demonstration, and the trace of the steps.
+
+    `pair` is that of bodies that touch, or -1.
+    """
 
     cause: NDArray[np.uint8]
     segment: NDArray[np.int16]
     joint: NDArray[np.int8]
     fraction: NDArray[np.float32]
+    pair: NDArray[np.int16]
     steps: NDArray[np.int32]
     trace: Trace
 
@@ -111,24 +115,26 @@ class Answers(NamedTuple):
             self.segment[index],
             self.joint[index],
             self.fraction[index],
+            self.pair[index],
             self.steps[index],
             self.trace,
         )
 
 
-ITEM, END, GUIDE, INSTANCE, DEMONSTRATION, CORRECTION, STEPS = range(7)
-"""Columns of the integer state of the lanes, (LANES, 7): the present item of work, instance times D
+ITEM, END, GUIDE, INSTANCE, DEMONSTRATION, CORRECTION, STEPS, KEPT = range(8)
+"""Columns of the integer state of the lanes, (LANES, 8): the present item of work, instance times D
 plus rank in the order (-1: none left); where its run of items ends; the guiding pose ahead; ..."""
 
 
 @njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-def]
+def settle(b, lanes, queue, units, rows, problem, answers):  # type: ignore[no-untyped-def]
     """Decides for every lane with an event, and starts plans in lanes that are free.
 
     Args:
         b: the block.
-        lanes: (LANES, 7) int64.
-        queue: (3,) int64: next unit of work, end of the units, items in a unit.
+        lanes: (LANES, 8) int64.
+        queue: (1,) int64: the next unit of work.
+        units: (U, 2) int64: the first item of each and the one after its last.
         rows: Places.
 
     Returns:
@@ -141,19 +147,21 @@ def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-
             continue
         busy += 1
         lanes[i, STEPS] += 1
-        traced = len(answers.trace.steps) > 0 and b[at(ACCEPTED, i)] != 0.0
-        if traced:
+        if answers.trace.keep != NOTHING and b[at(ACCEPTED, i)] != 0.0:
             segment = lanes[i, GUIDE] - problem.first[lanes[i, DEMONSTRATION]]
-            trace_step(
-                b, i, rows, lanes[i, INSTANCE], segment, lanes[i, CORRECTION] > 0, answers.trace
-            )
+            correction = lanes[i, CORRECTION] > 0
+            trace_step(b, i, lanes[i, KEPT], rows, segment, correction, answers.trace)
+            lanes[i, KEPT] += 1
         if b[at(EVENT, i)] == 0.0:
             continue
         cause, joint, fraction, part = decide(b, i, lanes, rows, problem)
         if cause < 0:
             continue
-        if traced:
-            end_trace(lanes[i, INSTANCE], part, answers.trace)
+        if answers.trace.keep == ALL or (answers.trace.keep != NOTHING and cause == SUCCESS):
+            whole = 1.0 if b[at(ACCEPTED, i)] == 0.0 else part
+            keep_plan(
+                i, lanes[i, KEPT], lanes[i, INSTANCE], lanes[i, DEMONSTRATION], whole, answers.trace
+            )
         plan = lanes[i, INSTANCE], lanes[i, DEMONSTRATION]
         answers.cause[plan] = cause
         done = cause == SUCCESS
@@ -165,7 +173,7 @@ def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-
         answers.steps[plan] = lanes[i, STEPS]
         lanes[i, ITEM] += 1
         if done or lanes[i, ITEM] == lanes[i, END]:
-            next_unit(i, lanes, queue)
+            next_unit(i, lanes, queue, units)
         if lanes[i, ITEM] >= 0:
             begin_plan(b, i, lanes, rows, problem)
         else:
@@ -174,13 +182,13 @@ def settle(b, lanes, queue, rows, problem, answers):  # type: ignore[no-untyped-
 
 
 @njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def next_unit(i, lanes, queue):  # type: ignore[no-untyped-def]
+def next_unit(i, lanes, queue, units):  # type: ignore[no-untyped-def]
     """Gives a lane the next unit of work, if any is left."""
-    if queue[0] == queue[1]:
+    if queue[0] == len(units):
         lanes[i, ITEM] = -1
         return
-    lanes[i, ITEM] = queue[0] * queue[2]
-    lanes[i, END] = lanes[i, ITEM] + queue[2]
+    lanes[i, ITEM] = units[queue[0], 0]
+    lanes[i, END] = units[queue[0], 1]
     queue[0] += 1
 
 
@@ -193,6 +201,7 @@ def begin_plan(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     lanes[i, DEMONSTRATION] = demonstration
     lanes[i, GUIDE] = problem.first[demonstration]
     lanes[i, STEPS] = 0
+    lanes[i, KEPT] = 0
     load_start(b, i, rows, problem.starts, uintp(problem.begins[demonstration]))
     b[at(ACCEPTED, i)] = 1.0
     aim_at_guide(b, i, lanes, problem)

@@ -11,7 +11,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from drake_screw.planning.compiled.rows import PROGRESS, STEP, at
+from drake_screw.planning.compiled.rows import LANES, PROGRESS, STEP, at
+
+STEPS = 48
+"""Steps of a plan that room is kept for, on average; most take about 15."""
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -30,12 +33,20 @@ Dormand and Prince's pair: Shampine, "Some practical Runge-Kutta formulas" (1986
 and Wanner, Solving Ordinary Differential Equations I, section II.6."""
 
 
+NOTHING, SUCCESSES, ALL = range(3)
+"""Of which plans the steps are kept."""
+
+
 class Trace(NamedTuple):
-    """Accepted steps of plans, each instance planned with one demonstration.
+    """Accepted steps of plans: of those at work, and of those that are done.
 
     Attributes:
-        steps: (N,) how many each plan takes; (0,) if no trace is kept.
-        first: (N + 1,) where the steps of each plan begin; those that find no place are counted.
+        keep: NOTHING, SUCCESSES or ALL.
+        lane_segment: (LANES, L) of the steps of the plans at work, as below; lane_s: (LANES, L, 2);
+            lane_q: (LANES, L, 5, n).
+        count: (3,) plans and steps that are kept, and plans that found no room.
+        plan: (P, 2) the instance and the demonstration of each.
+        first: (P + 1,) where the steps of each plan begin.
         segment: (T,) the segment that a step lies in, from 0.
         s: (T, 2) at its start and its end; 1 at both in a correction at a segment's end.
         part: (T,) how much of it the plan goes along: all of it, 1, unless it fails there.
@@ -43,52 +54,134 @@ class Trace(NamedTuple):
             at all stages, each times the step.
     """
 
-    steps: Index
+    keep: int
+    lane_segment: Index
+    lane_s: Array
+    lane_q: Array
+    count: Index
+    plan: Index
     first: Index
     segment: Index
     s: Array
     part: Array
     q: Array
 
+    def done(self) -> Trace:
+        """The plans that are done, without the room for more."""
+        plans, steps = int(self.count[0]), int(self.count[1])
+        return self._replace(
+            plan=self.plan[:plans],
+            first=self.first[: plans + 1],
+            segment=self.segment[:steps],
+            s=self.s[:steps],
+            part=self.part[:steps],
+            q=self.q[:steps],
+        )
 
-def new_trace(places: Index, n: int) -> Trace:
-    """A trace for N plans of an arm of n joints, with a number (N,) of places for each."""
-    first = np.cumsum([0, *places], dtype=np.int64)
-    T = int(first[-1])
-    steps = np.zeros(len(places), dtype=np.int64)
-    segment, q = np.zeros(T, dtype=np.int64), np.zeros((T, 5, n))
-    return Trace(steps, first, segment, np.zeros((T, 2)), np.zeros(T), q)
+    def of(self, order: Index) -> Trace:
+        """The plans of an order (p,) of those that are done, one after the other."""
+        lengths = np.diff(self.first)[order]
+        first = np.concatenate([[0], np.cumsum(lengths)])
+        steps = np.arange(first[-1]) + np.repeat(self.first[:-1][order] - first[:-1], lengths)
+        return self._replace(
+            plan=self.plan[order],
+            first=first,
+            segment=self.segment[steps],
+            s=self.s[steps],
+            part=self.part[steps],
+            q=self.q[steps],
+        )
+
+
+def new_trace(
+    n: int, keep: int = NOTHING, *, plans: int = 0, most: int = 0, times: int = 1
+) -> Trace:
+    """Room for plans of an arm of n joints.
+
+    Args:
+        keep: NOTHING, SUCCESSES or ALL.
+        plans: how many.
+        most: steps that each may take.
+        times: of STEPS, that they may take on average.
+    """
+    steps = min(plans * times * STEPS + most, plans * most)
+    lanes = LANES if keep != NOTHING else 0
+    return Trace(
+        keep,
+        np.zeros((lanes, most), dtype=np.int64),
+        np.zeros((lanes, most, 2)),
+        np.zeros((lanes, most, 5, n)),
+        np.zeros(3, dtype=np.int64),
+        np.zeros((plans, 2), dtype=np.int64),
+        np.zeros(plans + 1, dtype=np.int64),
+        np.zeros(steps, dtype=np.int64),
+        np.zeros((steps, 2)),
+        np.zeros(steps),
+        np.zeros((steps, 5, n)),
+    )
+
+
+def dense_output(q: Array, u: Array) -> Array:
+    """Joint positions (m, n) in steps (m, 5, n) of a trace, at fractions u (m,) of them.
+
+    A step of Dormand and Prince's pair is continued to a polynomial of fourth order between its
+    ends (Hairer, Norsett and Wanner, section II.6).
+    """
+    q0, q1, d0, d1, bend = np.moveaxis(q, 1, 0)
+    u = u[:, None]
+    v = 1.0 - u
+    return q0 + u * (q1 - q0) + u * v * (v * (d0 - q1 + q0) + u * (q1 - q0 - d1) + u * v * bend)
 
 
 @njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def trace_step(b, i, rows, plan, segment, correction, trace):  # type: ignore[no-untyped-def]
-    """Writes down a lane's step, if there is a place left for it; counts it in any case."""
-    k = trace.first[plan] + trace.steps[plan]
-    trace.steps[plan] += 1
-    if k >= trace.first[plan + 1]:
+def trace_step(b, i, k, rows, segment, correction, trace):  # type: ignore[no-untyped-def]
+    """Writes down a lane's step, its k-th, if there is room for it."""
+    if k >= trace.lane_segment.shape[1]:
         return
     n, step = rows.q_stage - rows.q, b[at(STEP, i)]
     begin = b[at(PROGRESS, i)]
     end = begin + step if begin + step < 1.0 - 1e-9 else 1.0
-    trace.segment[k] = segment
-    trace.s[k, 0] = 1.0 if correction else begin
-    trace.s[k, 1] = end
-    trace.part[k] = 1.0
+    trace.lane_segment[i, k] = segment
+    trace.lane_s[i, k, 0] = 1.0 if correction else begin
+    trace.lane_s[i, k, 1] = end
+    q = trace.lane_q[i, k]
     slope0 = rows.q_stage + 2 * n
     for j in range(n):
         bend = 0.0
         for stage in range(7):
             bend += BEND[stage] * b[at(slope0 + stage * n + j, i)]
-        trace.q[k, 0, j] = b[at(rows.q + j, i)]
-        trace.q[k, 1, j] = b[at(rows.q_stage + j, i)]
-        trace.q[k, 2, j] = step * b[at(slope0 + j, i)]
-        trace.q[k, 3, j] = step * b[at(slope0 + 6 * n + j, i)]
-        trace.q[k, 4, j] = step * bend
+        q[0, j] = b[at(rows.q + j, i)]
+        q[1, j] = b[at(rows.q_stage + j, i)]
+        q[2, j] = step * b[at(slope0 + j, i)]
+        q[3, j] = step * b[at(slope0 + 6 * n + j, i)]
+        q[4, j] = step * bend
 
 
 @njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def end_trace(plan, part, trace):  # type: ignore[no-untyped-def]
-    """Writes down how much of its last step a plan goes along."""
-    k = trace.first[plan] + trace.steps[plan] - 1
-    if k < trace.first[plan + 1]:
-        trace.part[k] = part
+def keep_plan(i, steps, instance, demonstration, part, trace):  # type: ignore[no-untyped-def]
+    """Keeps the steps of a plan that is done, if there is room for them.
+
+    Args:
+        i: the lane.
+        steps: that it took.
+        part: how much of the last one the plan goes along.
+    """
+    plan, first = trace.count[0], trace.count[1]
+    room = trace.lane_segment.shape[1]
+    if steps > room or first + steps > len(trace.segment) or plan >= len(trace.plan):
+        trace.count[2] += 1
+        return
+    for k in range(steps):
+        trace.segment[first + k] = trace.lane_segment[i, k]
+        trace.s[first + k, 0] = trace.lane_s[i, k, 0]
+        trace.s[first + k, 1] = trace.lane_s[i, k, 1]
+        trace.part[first + k] = 1.0
+        for row in range(5):
+            for j in range(trace.q.shape[2]):
+                trace.q[first + k, row, j] = trace.lane_q[i, k, row, j]
+    if steps > 0:
+        trace.part[first + steps - 1] = part
+    trace.plan[plan, 0], trace.plan[plan, 1] = instance, demonstration
+    trace.first[plan + 1] = first + steps
+    trace.count[0] += 1
+    trace.count[1] += steps

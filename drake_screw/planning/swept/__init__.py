@@ -1,0 +1,5 @@
+"""Whether paths touch anything, for all of each path: distances of convex shapes, and travel."""
+
+from drake_screw.planning.swept.checker import SweptChecker, Touched, lines
+
+__all__ = ["SweptChecker", "Touched", "lines"]

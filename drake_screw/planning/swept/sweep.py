@@ -1,0 +1,285 @@
+"""Whether an arm touches anything along a step of a joint path, and where first.
+
+A stretch of a step is free where, at its middle, every two shapes are farther apart than they can
+come nearer on the way to its ends (see `motion`). Pairs of which that is not so are looked at again
+in its two halves, and so on: what comes out holds for all of the path, not for points of it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from drake_screw.planning.swept.cell import DEEPEST, QUESTIONS
+from drake_screw.planning.swept.inner import inlined, inner
+from drake_screw.planning.swept.motion import (
+    place_arm,
+    place_balls,
+    place_object_shapes,
+    place_shape,
+)
+from drake_screw.planning.swept.separation import BAND, separation
+
+FINEST = 1e-4
+"""m, of travel to either side of a configuration: stretches as short as that are not halved. So
+much deeper than at the configurations looked at may shapes touch unnoticed."""
+
+PART = 0.25
+"""rad (or m), summed up over the joints: parts of a step in which to look at all pairs."""
+
+COARSE = 5e-3
+"""m, the same where it is known that something touches and only the place is sought."""
+
+NONE = 2.0
+"""A place in a step, 0 to 1, that says that nothing touches."""
+
+
+@inlined
+def as_polynomial(q, room):  # type: ignore[no-untyped-def]
+    """A step of a trace (5, n) as a polynomial of fourth degree, by its five Bernstein ordinates.
+
+    See `paths.dense_output`, whose terms they are.
+    """
+    for k in range(q.shape[1]):
+        q0, q1, d0, d1, e = q[0, k], q[1, k], q[2, k], q[3, k], q[4, k]
+        room.bend[0, k] = q0
+        room.bend[1, k] = q0 + 0.25 * d0
+        room.bend[2, k] = 0.5 * (q0 + q1) + (d0 - d1 + e) / 6.0
+        room.bend[3, k] = q1 - 0.25 * d1
+        room.bend[4, k] = q1
+
+
+@inlined
+def fastest(room, k):  # type: ignore[no-untyped-def]
+    """The speed of a joint in a step at most: that of its ordinates' differences, times four."""
+    bend = room.bend
+    c0, c1, c2, c3, c4 = bend[0, k], bend[1, k], bend[2, k], bend[3, k], bend[4, k]
+    return 4.0 * max(max(abs(c1 - c0), abs(c2 - c1)), max(abs(c3 - c2), abs(c4 - c3)))
+
+
+@inlined
+def go_to(cell, room, u, half):  # type: ignore[no-untyped-def]
+    """Puts the arm at a place u of a step; says how far its joints are from it within a half."""
+    v, bend = 1.0 - u, room.bend
+    for k in range(len(room.q)):
+        c0, c1, c2, c3, c4 = bend[0, k], bend[1, k], bend[2, k], bend[3, k], bend[4, k]
+        room.dq[k] = fastest(room, k) * half
+        q = v * v * (v * v * c0 + 4.0 * u * v * c1 + 6.0 * u * u * c2)
+        q += u * u * (4.0 * u * v * c3 + u * u * c4)
+        room.q[k] = min(max(q, cell.limits[0, k]), cell.limits[1, k])
+    place_arm(cell, room)
+    place_balls(cell, room)
+
+
+@inlined
+def look(cell, room, depth):  # type: ignore[no-untyped-def]
+    """Which of a list's pairs may touch within `room.dq` of `room.q`: the list of the next depth.
+
+    Returns:
+        The first pair that surely touches at `room.q`, -1 if none does; the longest travel among
+        the pairs listed, m; whether some of them may touch at `room.q` already.
+    """
+    found, longest, doubt, kept = -1, 0.0, False, 0
+    for i in range(room.lengths[depth]):
+        pair = room.listed[depth, i]
+        k, m = cell.behind[pair], cell.pairs[pair, 1] - standing_shapes(cell)
+        travel = room.travel[k, m]
+        lower, upper = between(cell, room, pair, travel)
+        spare = lower - cell.clearance - travel - BAND
+        if spare > 0.0:
+            if depth == 0:
+                room.until[pair] = room.gone[k, m] + spare
+            continue
+        if upper < cell.clearance - BAND and found < 0:
+            found = pair
+        doubt |= lower <= cell.clearance + BAND
+        longest = max(longest, travel)
+        room.listed[depth + 1, kept] = pair
+        kept += 1
+    room.lengths[depth + 1] = kept
+    return found, longest, doubt
+
+
+@inlined
+def list_near(cell, room):  # type: ignore[no-untyped-def]
+    """Lists all pairs but those that were so far apart that they cannot have met since."""
+    gone, travel = room.gone, room.travel
+    for k in range(gone.shape[0]):
+        for m in range(cell.begin[k], gone.shape[1]):
+            gone[k, m] += 2.0 * travel[k, m]
+    kept = 0
+    for group in range(len(room.first)):
+        begin = cell.groups[group]
+        so_far = gone[cell.behind[begin], cell.pairs[begin, 1] - standing_shapes(cell)]
+        if so_far < room.first[group]:
+            continue
+        least = 1e300
+        for pair in range(begin, cell.groups[group + 1]):
+            if so_far >= room.until[pair]:
+                room.listed[0, kept] = pair
+                kept += 1
+                least = so_far
+            else:
+                least = min(least, room.until[pair])
+        room.first[group] = least
+    room.lengths[0] = kept
+
+
+@inlined
+def standing_shapes(cell):  # type: ignore[no-untyped-def]
+    """How many shapes the arm does not move."""
+    return len(cell.joint) - len(cell.moved_joint)
+
+
+@inlined
+def between(cell, room, pair, travel):  # type: ignore[no-untyped-def]
+    """Bounds in m on a pair's distance; that of a ball around b and a box around a first."""
+    a, b = cell.pairs[pair, 0], cell.pairs[pair, 1]
+    if cell.joint[a] >= 0:
+        place_shape(cell, room, a)
+    m = b - standing_shapes(cell)
+    x, y, z = room.centers[0, m], room.centers[1, m], room.centers[2, m]
+    needed = cell.clearance + travel + 2.0 * BAND
+    away = outside(cell, room, a, x, y, z)
+    apart = needed + cell.reach[b]
+    if away > apart * apart:
+        return math.sqrt(away) - cell.reach[b], 1e9
+    place_shape(cell, room, b)
+    return exactly(cell, room, a, b, pair, needed)
+
+
+@inlined
+def outside(cell, room, a, x, y, z):  # type: ignore[no-untyped-def]
+    """Square of a point's distance from the box around shape a, m^2."""
+    A = room.X_WG[a]
+    x, y, z = x - A[0, 3], y - A[1, 3], z - A[2, 3]
+    square = 0.0
+    for i in range(3):
+        out = abs(A[0, i] * x + A[1, i] * y + A[2, i] * z) - cell.box[a, i]
+        out = max(out, 0.0)
+        square += out * out
+    return square
+
+
+@inner
+def exactly(cell, room, a, b, number, needed):  # type: ignore[no-untyped-def]
+    """`separation` of two shapes, from where it was found last."""
+    A, B, v = room.X_WG[a], room.X_WG[b], room.v[number]
+    if v[0] == 0.0 and v[1] == 0.0 and v[2] == 0.0:
+        for i in range(3):
+            v[i] = A[i, 3] - B[i, 3]
+        if v[0] == 0.0 and v[1] == 0.0 and v[2] == 0.0:
+            v[2] = 1.0
+    return separation(
+        cell.shapes, a, A, b, B, v, room.hints[number], needed, cell.clearance,
+        room.W, room.weights, room.pa, room.pb,
+    )
+
+
+@inner
+def sweep(cell, room, step, q):  # type: ignore[no-untyped-def]
+    """The first touch in a step.
+
+    Args:
+        step: its number, for questions.
+        q: (5, n) the step as a trace has it.
+
+    Returns:
+        Its place in the step, NONE if nothing surely touches, and the pair that does. What is left
+        open is put down in `room.asked`.
+    """
+    as_polynomial(q, room)
+    motion = 0.0
+    for k in range(len(room.q)):
+        motion += fastest(room, k)
+    parts = math.ceil(motion / PART) if motion > PART else 1
+    for part in range(parts):
+        hit, pair = _part(cell, room, step, part, parts)
+        if hit < NONE:
+            return hit, pair
+    return NONE, -1
+
+
+@inner
+def _part(cell, room, step, part, parts):  # type: ignore[no-untyped-def]
+    """As `sweep`, of one of so many parts of a step."""
+    hit, touching = NONE, -1
+    depth = 0
+    room.place[0] = part
+    half = 0.5 / parts
+    while True:
+        u = (2 * room.place[depth] + 1) * half
+        deeper = False
+        if u - half < hit:
+            go_to(cell, room, u, half)
+            if depth == 0:
+                list_near(cell, room)
+            pair, travel, doubt = look(cell, room, depth)
+            if pair >= 0 and u < hit:
+                hit, touching = u, pair
+            deeper = room.lengths[depth + 1] > 0
+            if hit < NONE:
+                deeper &= travel > COARSE and depth < DEEPEST
+            elif deeper and (travel <= FINEST or depth == DEEPEST):
+                deeper = False
+                if doubt or travel > FINEST:
+                    ask(room, step, u)
+        if deeper:
+            room.place[depth + 1] = 2 * room.place[depth]
+            depth += 1
+            half *= 0.5
+            continue
+        while depth > 0 and room.place[depth] & 1:
+            depth -= 1
+            half *= 2.0
+        if depth == 0:
+            return hit, touching
+        room.place[depth] += 1
+
+
+@inlined
+def ask(room, step, u):  # type: ignore[no-untyped-def]
+    """Puts down a question: the configuration `room.q`, at a place u of a step."""
+    k = room.count[0]
+    room.count[0] += 1
+    if k >= QUESTIONS:
+        return
+    for j in range(len(room.q)):
+        room.asked[k, j] = room.q[j]
+    room.at[k, 0], room.at[k, 1] = step, u
+
+
+@inner
+def stand(cell, room, X_WO, q):  # type: ignore[no-untyped-def]
+    """Places the objects; the first pair that the arm does not move and that surely touches, or -1.
+
+    What is left open is put down as a question about the configuration q (n,).
+    """
+    place_object_shapes(cell, room, X_WO)
+    room.count[0] = 0
+    for i in range(len(cell.standing)):
+        a, b, number = cell.standing[i, 0], cell.standing[i, 1], len(cell.pairs) + i
+        B, needed = room.X_WG[b], cell.clearance + 2.0 * BAND
+        apart = needed + cell.reach[b]
+        if outside(cell, room, a, B[0, 3], B[1, 3], B[2, 3]) > apart * apart:
+            continue
+        lower, upper = exactly(cell, room, a, b, number, needed)
+        if lower > cell.clearance + BAND:
+            continue
+        if upper < cell.clearance - BAND:
+            return number
+        for j in range(len(q)):
+            room.q[j] = q[j]
+        ask(room, 0, 0.0)
+    return -1
+
+
+@inlined
+def set_out(room):  # type: ignore[no-untyped-def]
+    """Nothing is known of any pair at the start of a path."""
+    for group in range(len(room.first)):
+        room.first[group] = -1.0
+    for pair in range(len(room.until)):
+        room.until[pair] = -1.0
+    for k in range(room.gone.shape[0]):
+        for m in range(room.gone.shape[1]):
+            room.gone[k, m] = 0.0
