@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from drake_screw.planning.compiled.expressions import Expression, floor, maximum
 from drake_screw.typing import Array
 
 
-def polynomial(x: Expression, coefficients: list[float]) -> Expression:
+def polynomial(x: Expression, coefficients: Sequence[float]) -> Expression:
     """Horner's scheme; coefficients from the constant term up."""
     *rest, highest = coefficients
     result = highest * x + rest.pop()
@@ -24,8 +24,8 @@ def cos_sin(angle: Expression) -> tuple[Expression, Expression]:
     turns = floor(angle * (1.0 / (2.0 * np.pi)) + 0.5)
     half = 0.5 * angle - np.pi * turns
     square = half * half
-    sine = half * polynomial(square, _SIN)
-    cosine = polynomial(square, _COS)
+    sine = half * polynomial(square, SIN)
+    cosine = polynomial(square, COS)
     return 1.0 - 2.0 * sine * sine, 2.0 * sine * cosine
 
 
@@ -70,8 +70,10 @@ def fit(f: Callable[[Array], Array], degree: int, end: float) -> list[float]:
     return [float(c) for c in series.convert(kind=np.polynomial.Polynomial).coef]
 
 
-_SIN = fit(lambda x: np.sinc(np.sqrt(x) / np.pi), 6, (np.pi / 2) ** 2)
-_COS = fit(lambda x: np.cos(np.sqrt(x)), 7, (np.pi / 2) ** 2)
+SIN = tuple(fit(lambda x: np.sinc(np.sqrt(x) / np.pi), 6, (np.pi / 2) ** 2))
+COS = tuple(fit(lambda x: np.cos(np.sqrt(x)), 7, (np.pi / 2) ** 2))
+"""Coefficients of sin(x) / x and cos(x) in x^2, for x of a quarter turn at most."""
+
 _ATAN = fit(
     lambda x: np.arctan(np.sqrt(x + 1e-300)) / np.sqrt(x + 1e-300), 9, np.tan(np.pi / 8) ** 2
 )

@@ -23,7 +23,8 @@ about all of the path."""
 class Cell(NamedTuple):
     """An arm of n joints and S shapes, of which it moves the last M, in the order of its joints.
 
-    Pairs are in groups: shapes that one shape could touch, on links of the same joint.
+    Pairs are in groups: shapes near one another that one shape could touch, on links of the same
+    joint.
 
     Attributes:
         screws: (n, 6) of its joints at q = 0, in W about its origin.
@@ -38,8 +39,12 @@ class Cell(NamedTuple):
         moved_joint, moved_reach: (M,) as `joint` and `reach` have them.
         begin: (n,) the first of the M that each joint moves.
         pairs: (P, 2) shapes that could touch, the second one moved by more joints.
-        behind: (P,) the joint from which on joints count for the motion of a pair.
+        slot: (P,) the place of a pair's motion in `Room.travel`: that of its second shape, seen
+            from behind the joint that moves the first one.
         groups: (C + 1,) where the pairs of each group begin.
+        group_slot: (C,) as `slot` has it.
+        around: (C, 2, 3) m, lower and upper corner of a box in W around a group's shapes; infinite
+            where they are not fixed in W.
         standing: (R, 2) shapes that could touch of which the arm moves neither.
         clearance: m, that they have to be apart.
     """
@@ -57,8 +62,10 @@ class Cell(NamedTuple):
     moved_reach: Array
     begin: Index
     pairs: Index
-    behind: Index
+    slot: Index
     groups: Index
+    group_slot: Index
+    around: Array
     standing: Index
     clearance: float
 
@@ -70,11 +77,13 @@ class Room(NamedTuple):
         E: (n + 1, 3, 4) how each joint moves what lies behind it.
         axes: (n, 6) the joints' screws as they are.
         q, dq: (n,) a configuration, and how far joints are from it at most, rad or m.
+        fastest: (n,) how fast each joint moves in a step at most.
+        sines, cosines: (n,) of q.
         bend: (5, n) a step as a polynomial.
         centers: (3, M) m, origins of the shapes that the arm moves.
-        travel: (n, M) m, how far each is from there at most, seen from before each joint.
+        travel: (n M,) m, how far each is from there at most, seen from before each joint.
         way: (M,) m, of the joints so far.
-        gone: (n, M) m, the sum of all travel.
+        gone: (n M,) m, the sum of all travel.
         until: (P,) m, up to which of it a pair need not be looked at; first: (C,) least of a group.
         X_WG: (S, 3, 4) poses of shapes.
         stamp: (S,) when they were last written; clock: (1,) now.
@@ -90,6 +99,9 @@ class Room(NamedTuple):
     axes: Array
     q: Array
     dq: Array
+    fastest: Array
+    sines: Array
+    cosines: Array
     bend: Array
     centers: Array
     travel: Array
@@ -123,11 +135,14 @@ def room_for(cell: Cell) -> Room:
         axes=np.zeros((n, 6)),
         q=np.zeros(n),
         dq=np.zeros(n),
+        fastest=np.zeros(n),
+        sines=np.zeros(n),
+        cosines=np.zeros(n),
         bend=np.zeros((5, n)),
         centers=np.zeros((3, M)),
-        travel=np.zeros((n, M)),
+        travel=np.zeros(n * M),
         way=np.zeros(M),
-        gone=np.zeros((n, M)),
+        gone=np.zeros(n * M),
         until=np.zeros(P),
         first=np.zeros(len(cell.groups) - 1),
         X_WG=np.array(cell.X_WG),

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import math
 
+from numba import uintp
+
+from drake_screw.planning.compiled.functions import COS, SIN
 from drake_screw.planning.swept.inner import inlined
+
+PI = math.pi
 
 
 @inlined
@@ -18,6 +23,18 @@ def place_arm(cell, room):  # type: ignore[no-untyped-def]
     room.clock[0] += 1
     E, axes = room.E, room.axes
     for k in range(len(room.q)):
+        # Of the angle's half within a quarter turn of a whole number of half turns.
+        half = 0.5 * room.q[k]
+        half -= PI * math.floor(half * (1.0 / PI) + 0.5)
+        square = half * half
+        sine, cosine = SIN[6], COS[7]
+        for i in range(5, -1, -1):
+            sine = sine * square + SIN[i]
+        for i in range(6, -1, -1):
+            cosine = cosine * square + COS[i]
+        sine *= half
+        room.sines[k], room.cosines[k] = 2.0 * sine * cosine, 1.0 - 2.0 * sine * sine
+    for k in range(len(room.q)):
         x, y, z = cell.screws[k, 0], cell.screws[k, 1], cell.screws[k, 2]
         a, b, c = cell.screws[k, 3], cell.screws[k, 4], cell.screws[k, 5]
         q = room.q[k]
@@ -29,7 +46,7 @@ def place_arm(cell, room):  # type: ignore[no-untyped-def]
                 axes[k, 3 + i] = E[k, i, 0] * a + E[k, i, 1] * b + E[k, i, 2] * c
                 E[k + 1, i, 3] = E[k, i, 3] + axes[k, 3 + i] * q
             continue
-        s, o = math.sin(q), 1.0 - math.cos(q)
+        s, o = room.sines[k], 1.0 - room.cosines[k]
         # w x v, and w x (w x v) = w (w . v) - v
         d, e, f = y * c - z * b, z * a - x * c, x * b - y * a
         pitch = x * a + y * b + z * c
@@ -65,27 +82,26 @@ def place_balls(cell, room):  # type: ignore[no-untyped-def]
     "Adaptive dynamic collision checking for single and multiple articulated robots in complex
     environments", 2005). Seen from a link on the way the joints before it do not count.
     """
-    E, p, travel, reach = room.E, room.centers, room.travel, cell.moved_reach
-    M = p.shape[1]
+    E, p, way, travel = room.E, room.centers, room.way, room.travel
+    M = uintp(p.shape[1])
     for m in range(M):
-        last = cell.moved_joint[m] + 1
+        last = uintp(cell.moved_joint[m] + 1)
         x, y, z = cell.centers[0, m], cell.centers[1, m], cell.centers[2, m]
         for i in range(3):
             p[i, m] = E[last, i, 0] * x + E[last, i, 1] * y + E[last, i, 2] * z + E[last, i, 3]
-        room.way[m] = 0.0
+        way[m] = 0.0
     for k in range(len(room.q) - 1, -1, -1):
         u, v, w = room.axes[k, 0], room.axes[k, 1], room.axes[k, 2]
         a, b, c = room.axes[k, 3], room.axes[k, 4], room.axes[k, 5]
         turns = 1.0 if u * u + v * v + w * w > 0.5 else 0.0
-        dq = room.dq[k]
-        for m in range(cell.begin[k], M):
+        dq, row = room.dq[k], uintp(k) * M
+        for m in range(uintp(cell.begin[k]), M):
             x, y, z = p[0, m], p[1, m], p[2, m]
             d = a + v * z - w * y
             e = b + w * x - u * z
             f = c + u * y - v * x
-            far = room.way[m] + dq * (math.sqrt(d * d + e * e + f * f) + turns * reach[m])
-            room.way[m] = far
-            travel[k, m] = far
+            way[m] += dq * (math.sqrt(d * d + e * e + f * f) + turns * cell.moved_reach[m])
+            travel[row + m] = way[m]
 
 
 @inlined
@@ -94,7 +110,7 @@ def place_shape(cell, room, s):  # type: ignore[no-untyped-def]
     if room.stamp[s] == room.clock[0]:
         return
     room.stamp[s] = room.clock[0]
-    last = cell.joint[s] + 1
+    last = uintp(cell.joint[s] + 1)
     E, G, X = room.E, cell.X_WG, room.X_WG
     for i in range(3):
         l, m, n = E[last, i, 0], E[last, i, 1], E[last, i, 2]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from pydrake.geometry import (
     Box,
     Capsule,
@@ -31,6 +32,10 @@ from drake_screw.typing import Array
 
 ENDLESS = 20.0
 """m, half extent of the box that stands for a half space."""
+
+
+FEW = 4
+"""Fixed shapes near one another that are looked at as one, at most."""
 
 
 @dataclass(frozen=True)
@@ -175,13 +180,23 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
         ids.append(geometry)
     reach = np.array([core.reach for core in cores], dtype=float)
     balls = np.column_stack([np.array(X_WG).reshape(-1, 3, 4)[:, :, 3], reach])
-    pairs, standing = _pairs(workcell, bodies, ids, joint, objects, balls, clearance)
+    boxes = np.array([_box_around(X, core) for X, core in zip(X_WG, cores, strict=True)])
+    fixed = (np.array(joint) < 0) & (np.array(objects) < 0)
+    cluster = clusters(boxes, fixed)
+    pairs, standing = _pairs(workcell, bodies, ids, joint, objects, balls, clearance, cluster)
     chain = arm.screw_chain()
     joints = np.array(joint, dtype=np.int64)
+    moved = int((joints < 0).sum())
     ends = np.array(pairs, dtype=np.int64).reshape(-1, 2)
     behind = joints[ends[:, 0]] + 1
-    new = (np.diff(ends[:, 1], prepend=-1) != 0) | (np.diff(behind, prepend=-1) != 0)
-    moved = int((joints < 0).sum())
+    slot = behind * (len(joints) - moved) + ends[:, 1] - moved
+    of = np.column_stack([ends[:, 1], behind, cluster[ends[:, 0]]])
+    groups = np.flatnonzero((np.diff(of, axis=0, prepend=-2) != 0).any(axis=1))
+    around = np.empty((len(groups), 2, 3))
+    for i, own in enumerate(np.split(ends[:, 0], groups[1:])):
+        around[i, 0], around[i, 1] = boxes[own, 0].min(axis=0), boxes[own, 1].max(axis=0)
+        if not fixed[own].all():
+            around[i] = [[-np.inf] * 3, [np.inf] * 3]
     frames = np.array(X_WG, dtype=float).reshape(-1, 3, 4)
     cell = Cell(
         np.ascontiguousarray(chain.screws, dtype=float),
@@ -197,8 +212,10 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
         reach[moved:].copy(),
         np.searchsorted(joints[moved:], np.arange(arm.n)).astype(np.int64),
         ends,
-        behind,
-        np.append(np.flatnonzero(new), len(ends)).astype(np.int64),
+        slot,
+        np.append(groups, len(ends)).astype(np.int64),
+        slot[groups],
+        around,
         np.array(standing, dtype=np.int64).reshape(-1, 2),
         float(clearance),
     )
@@ -207,7 +224,7 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
     return cell, np.array(of_bodies, dtype=np.int64)
 
 
-def _pairs(workcell, bodies, ids, joint, objects, balls, clearance):  # type: ignore[no-untyped-def]
+def _pairs(workcell, bodies, ids, joint, objects, balls, clearance, cluster):  # type: ignore[no-untyped-def]
     """Pairs of shapes that Drake would look at, by their place in the lists, and standing ones."""
     checker = workcell.checker
     inspector = workcell.scene_graph.model_inspector()
@@ -240,8 +257,40 @@ def _pairs(workcell, bodies, ids, joint, objects, balls, clearance):  # type: ig
                 pairs.append((a, b))
             elif objects[a] >= 0 or objects[b] >= 0:
                 standing.append((a, b))
-    pairs.sort(key=lambda pair: (pair[1], joint[pair[0]], pair[0]))
+    pairs.sort(key=lambda pair: (pair[1], joint[pair[0]], cluster[pair[0]], pair[0]))
     return pairs, standing
+
+
+def _box_around(X_WG: Array, core: Core) -> Array:
+    """(2, 3) m, lower and upper corner of a box in W around a core at X_WG (3, 4)."""
+    half = np.abs(X_WG[:, :3]) @ core.box
+    return np.stack([X_WG[:, 3] - half, X_WG[:, 3] + half])
+
+
+def clusters(boxes: Array, some: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Sorts boxes into clusters of a few that are near one another.
+
+    Args:
+        boxes: (S, 2, 3) m, their lower and upper corners.
+        some: (S,) which of them.
+
+    Returns:
+        (S,) the cluster of each, from 0; -1 of the others.
+    """
+    cluster = np.full(len(boxes), -1)
+    sets, count = [np.flatnonzero(some)], 0
+    middles = boxes.mean(axis=1)
+    while sets:
+        own = sets.pop()
+        if len(own) <= FEW:
+            cluster[own] = count
+            count += 1
+            continue
+        longest = np.argmax(np.ptp(middles[own], axis=0))
+        own = own[np.argsort(middles[own, longest], kind="stable")]
+        gap = np.argmax(np.diff(middles[own, longest])) + 1
+        sets += [own[:gap], own[gap:]]
+    return cluster
 
 
 def _together(cores: list[Core]) -> Convex:

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from numba import uintp
+
 from drake_screw.planning.swept.cell import DEEPEST, QUESTIONS
 from drake_screw.planning.swept.inner import inlined, inner
 from drake_screw.planning.swept.motion import (
@@ -23,7 +26,7 @@ FINEST = 1e-4
 """m, of travel to either side of a configuration: stretches as short as that are not halved. So
 much deeper than at the configurations looked at may shapes touch unnoticed."""
 
-PART = 0.25
+PART = 0.4
 """rad (or m), summed up over the joints: parts of a step in which to look at all pairs."""
 
 COARSE = 5e-3
@@ -37,23 +40,25 @@ NONE = 2.0
 def as_polynomial(q, room):  # type: ignore[no-untyped-def]
     """A step of a trace (5, n) as a polynomial of fourth degree, by its five Bernstein ordinates.
 
-    See `paths.dense_output`, whose terms they are.
+    They are those of `dense_output`. The polynomial changes at most as fast as they do from one to
+    the next, times its degree.
+
+    Returns:
+        How far the joints move in the step at most, summed up, rad or m.
     """
+    motion = 0.0
     for k in range(q.shape[1]):
         q0, q1, d0, d1, e = q[0, k], q[1, k], q[2, k], q[3, k], q[4, k]
+        middle = 0.5 * (q0 + q1) + (d0 - d1 + e) / 6.0
         room.bend[0, k] = q0
         room.bend[1, k] = q0 + 0.25 * d0
-        room.bend[2, k] = 0.5 * (q0 + q1) + (d0 - d1 + e) / 6.0
+        room.bend[2, k] = middle
         room.bend[3, k] = q1 - 0.25 * d1
         room.bend[4, k] = q1
-
-
-@inlined
-def fastest(room, k):  # type: ignore[no-untyped-def]
-    """The speed of a joint in a step at most: that of its ordinates' differences, times four."""
-    bend = room.bend
-    c0, c1, c2, c3, c4 = bend[0, k], bend[1, k], bend[2, k], bend[3, k], bend[4, k]
-    return 4.0 * max(max(abs(c1 - c0), abs(c2 - c1)), max(abs(c3 - c2), abs(c4 - c3)))
+        inner = max(abs(room.bend[1, k] - middle), abs(room.bend[3, k] - middle))
+        room.fastest[k] = 4.0 * max(inner, 0.25 * max(abs(d0), abs(d1)))
+        motion += room.fastest[k]
+    return motion
 
 
 @inlined
@@ -62,7 +67,7 @@ def go_to(cell, room, u, half):  # type: ignore[no-untyped-def]
     v, bend = 1.0 - u, room.bend
     for k in range(len(room.q)):
         c0, c1, c2, c3, c4 = bend[0, k], bend[1, k], bend[2, k], bend[3, k], bend[4, k]
-        room.dq[k] = fastest(room, k) * half
+        room.dq[k] = room.fastest[k] * half
         q = v * v * (v * v * c0 + 4.0 * u * v * c1 + 6.0 * u * u * c2)
         q += u * u * (4.0 * u * v * c3 + u * u * c4)
         room.q[k] = min(max(q, cell.limits[0, k]), cell.limits[1, k])
@@ -80,20 +85,21 @@ def look(cell, room, depth):  # type: ignore[no-untyped-def]
     """
     found, longest, doubt, kept = -1, 0.0, False, 0
     for i in range(room.lengths[depth]):
-        pair = room.listed[depth, i]
-        k, m = cell.behind[pair], cell.pairs[pair, 1] - standing_shapes(cell)
-        travel = room.travel[k, m]
+        number = room.listed[depth, i]
+        pair = uintp(number)
+        slot = uintp(cell.slot[pair])
+        travel = room.travel[slot]
         lower, upper = between(cell, room, pair, travel)
         spare = lower - cell.clearance - travel - BAND
         if spare > 0.0:
             if depth == 0:
-                room.until[pair] = room.gone[k, m] + spare
+                room.until[pair] = room.gone[slot] + spare
             continue
         if upper < cell.clearance - BAND and found < 0:
-            found = pair
+            found = number
         doubt |= lower <= cell.clearance + BAND
         longest = max(longest, travel)
-        room.listed[depth + 1, kept] = pair
+        room.listed[depth + 1, kept] = number
         kept += 1
     room.lengths[depth + 1] = kept
     return found, longest, doubt
@@ -103,19 +109,31 @@ def look(cell, room, depth):  # type: ignore[no-untyped-def]
 def list_near(cell, room):  # type: ignore[no-untyped-def]
     """Lists all pairs but those that were so far apart that they cannot have met since."""
     gone, travel = room.gone, room.travel
-    for k in range(gone.shape[0]):
-        for m in range(cell.begin[k], gone.shape[1]):
-            gone[k, m] += 2.0 * travel[k, m]
+    for slot in range(uintp(len(gone))):
+        gone[slot] += 2.0 * travel[slot]
     kept = 0
-    for group in range(len(room.first)):
-        begin = cell.groups[group]
-        so_far = gone[cell.behind[begin], cell.pairs[begin, 1] - standing_shapes(cell)]
+    moved = standing_shapes(cell)
+    for group in range(uintp(len(room.first))):
+        slot = uintp(cell.group_slot[group])
+        so_far = gone[slot]
         if so_far < room.first[group]:
             continue
+        begin, end = uintp(cell.groups[group]), uintp(cell.groups[group + uintp(1)])
+        b = cell.pairs[begin, 1]
+        m, square = uintp(b - moved), 0.0
+        for i in range(3):
+            x = room.centers[i, m]
+            out = max(cell.around[group, 0, i] - x, x - cell.around[group, 1, i])
+            out = max(out, 0.0)
+            square += out * out
+        apart = cell.clearance + travel[slot] + BAND + cell.reach[uintp(b)]
+        if square > apart * apart:
+            room.first[group] = so_far + math.sqrt(square) - apart
+            continue
         least = 1e300
-        for pair in range(begin, cell.groups[group + 1]):
+        for pair in range(begin, end):
             if so_far >= room.until[pair]:
-                room.listed[0, kept] = pair
+                room.listed[0, kept] = np.int64(pair)
                 kept += 1
                 least = so_far
             else:
@@ -133,10 +151,10 @@ def standing_shapes(cell):  # type: ignore[no-untyped-def]
 @inlined
 def between(cell, room, pair, travel):  # type: ignore[no-untyped-def]
     """Bounds in m on a pair's distance; that of a ball around b and a box around a first."""
-    a, b = cell.pairs[pair, 0], cell.pairs[pair, 1]
+    a, b = uintp(cell.pairs[pair, 0]), uintp(cell.pairs[pair, 1])
     if cell.joint[a] >= 0:
         place_shape(cell, room, a)
-    m = b - standing_shapes(cell)
+    m = b - uintp(standing_shapes(cell))
     x, y, z = room.centers[0, m], room.centers[1, m], room.centers[2, m]
     needed = cell.clearance + travel + 2.0 * BAND
     away = outside(cell, room, a, x, y, z)
@@ -144,7 +162,10 @@ def between(cell, room, pair, travel):  # type: ignore[no-untyped-def]
     if away > apart * apart:
         return math.sqrt(away) - cell.reach[b], 1e9
     place_shape(cell, room, b)
-    return exactly(cell, room, a, b, pair, needed)
+    return exactly(
+        cell.shapes, a, room.X_WG[a], b, room.X_WG[b], room.v[pair], room.hints[pair],
+        needed, cell.clearance, room.W, room.weights, room.pa, room.pb,
+    )  # fmt: skip
 
 
 @inlined
@@ -161,18 +182,14 @@ def outside(cell, room, a, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @inner
-def exactly(cell, room, a, b, number, needed):  # type: ignore[no-untyped-def]
-    """`separation` of two shapes, from where it was found last."""
-    A, B, v = room.X_WG[a], room.X_WG[b], room.v[number]
+def exactly(shapes, a, A, b, B, v, hints, needed, least, W, weights, p, q):  # type: ignore[no-untyped-def]
+    """`separation` of two shapes at poses A and B (3, 4), from where it was found last."""
     if v[0] == 0.0 and v[1] == 0.0 and v[2] == 0.0:
         for i in range(3):
             v[i] = A[i, 3] - B[i, 3]
         if v[0] == 0.0 and v[1] == 0.0 and v[2] == 0.0:
             v[2] = 1.0
-    return separation(
-        cell.shapes, a, A, b, B, v, room.hints[number], needed, cell.clearance,
-        room.W, room.weights, room.pa, room.pb,
-    )
+    return separation(shapes, a, A, b, B, v, hints, needed, least, W, weights, p, q)
 
 
 @inner
@@ -187,10 +204,7 @@ def sweep(cell, room, step, q):  # type: ignore[no-untyped-def]
         Its place in the step, NONE if nothing surely touches, and the pair that does. What is left
         open is put down in `room.asked`.
     """
-    as_polynomial(q, room)
-    motion = 0.0
-    for k in range(len(room.q)):
-        motion += fastest(room, k)
+    motion = as_polynomial(q, room)
     parts = math.ceil(motion / PART) if motion > PART else 1
     for part in range(parts):
         hit, pair = _part(cell, room, step, part, parts)
@@ -260,9 +274,12 @@ def stand(cell, room, X_WO, q):  # type: ignore[no-untyped-def]
         a, b, number = cell.standing[i, 0], cell.standing[i, 1], len(cell.pairs) + i
         B, needed = room.X_WG[b], cell.clearance + 2.0 * BAND
         apart = needed + cell.reach[b]
-        if outside(cell, room, a, B[0, 3], B[1, 3], B[2, 3]) > apart * apart:
+        if outside(cell, room, uintp(a), B[0, 3], B[1, 3], B[2, 3]) > apart * apart:
             continue
-        lower, upper = exactly(cell, room, a, b, number, needed)
+        lower, upper = exactly(
+            cell.shapes, uintp(a), room.X_WG[a], uintp(b), B, room.v[number], room.hints[number],
+            needed, cell.clearance, room.W, room.weights, room.pa, room.pb,
+        )  # fmt: skip
         if lower > cell.clearance + BAND:
             continue
         if upper < cell.clearance - BAND:
@@ -280,6 +297,5 @@ def set_out(room):  # type: ignore[no-untyped-def]
         room.first[group] = -1.0
     for pair in range(len(room.until)):
         room.until[pair] = -1.0
-    for k in range(room.gone.shape[0]):
-        for m in range(room.gone.shape[1]):
-            room.gone[k, m] = 0.0
+    for slot in range(len(room.gone)):
+        room.gone[slot] = 0.0
