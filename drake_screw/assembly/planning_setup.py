@@ -6,10 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
-from drake_screw.assembly.sanity import check_reach, check_start
+from drake_screw.assembly.sanity import check_reach, check_start, check_start_is_free
 from drake_screw.assembly.symmetries import symmetries
 from drake_screw.assembly.workcell_parts import (
     object_configs,
+    obstacle_configs,
     robot_config,
     table_config,
     work_area,
@@ -19,6 +20,7 @@ from drake_screw.planning.approach import seeds
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.robot import (
     ObjectConfig,
+    ObstacleConfig,
     RobotConfig,
     TableConfig,
     Workcell,
@@ -40,7 +42,7 @@ class PlanningSetup:
 
     @cached_property
     def robot(self) -> RobotConfig:
-        """Which arm of which model."""
+        """Which arm of which model, and what it holds."""
         return robot_config(self.scenario)
 
     @cached_property
@@ -54,15 +56,24 @@ class PlanningSetup:
         return object_configs(self.scenario)
 
     @cached_property
+    def obstacles(self) -> tuple[ObstacleConfig, ...]:
+        """Other things that stand around."""
+        return obstacle_configs(self.scenario)
+
+    @cached_property
     def workcell(self) -> Workcell:
         """The Drake diagram.
 
         Raises:
-            ModelError: the model lacks a name.
-            ScenarioError: the start is outside the limits, or the work area out of reach.
+            ModelError: the model lacks a name, or a mesh cannot be read.
+            ScenarioError: the start is outside the limits, or not free of obstacles, or the work
+                area is out of reach.
         """
-        workcell = build_workcell(self.robot, table=self.table, objects=self.objects)
+        workcell = build_workcell(
+            self.robot, table=self.table, objects=self.objects, obstacles=self.obstacles
+        )
         check_start(self.scenario, workcell.arm)
+        check_start_is_free(self.scenario, workcell)
         check_reach(self.scenario, workcell.arm, self.area)
         return workcell
 
