@@ -84,7 +84,7 @@ def let_touch(
     manager = scene_graph.collision_filter_manager()
     for name in names:
         if name not in others:
-            message, remedy = unknown("link or thing", name, "the workcell", list(others))
+            message, remedy = unknown("part", name, "the workcell", list(others))
             raise ModelError(f"robot.tool.touches: {message}", remedy=remedy)
         for other in others[name]:
             theirs = GeometrySet(plant.GetCollisionGeometriesForBody(other))

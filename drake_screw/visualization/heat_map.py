@@ -104,7 +104,7 @@ def heat_map_figure(
     depth, width = upper - lower
     height = float(np.clip(7.6 * depth / max(width, 1e-9), 2.2, 7.6))
     caption = fill(_caption(event, regions, drawn), 120)
-    height += 0.2 * caption.count("\n")
+    height += 0.2 * caption.count("\n") + (0.3 if things else 0.0)
     figure = Figure(figsize=(9.6, height + 1.6), layout="constrained")
     ax = figure.add_subplot()
     figure.get_layout_engine().execute(figure)

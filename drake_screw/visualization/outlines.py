@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
 from matplotlib.patches import Patch, Polygon
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
@@ -21,7 +22,13 @@ ABOVE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 BESIDE = 0.15
 """m, how far beyond a picture's own things it shows others."""
 
-_LOOK = {"facecolor": "none", "edgecolor": INK, "hatch": "////", "linewidth": 1.2}
+_LOOK = {
+    "facecolor": to_rgba(PAPER, 0.45),
+    "edgecolor": INK,
+    "hatch": "////",
+    "linewidth": 1.2,
+    "path_effects": [withStroke(linewidth=3.0, foreground=PAPER)],
+}
 
 
 @dataclass(frozen=True, eq=False)
