@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -15,10 +16,12 @@ from drake_screw.assembly.workcell_parts import (
     table_config,
     work_area,
 )
+from drake_screw.errors import ModelError
 from drake_screw.planning import BatchPlanner, Symmetries
 from drake_screw.planning.approach import seeds
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.robot import (
+    MeshShape,
     ObjectConfig,
     ObstacleConfig,
     RobotConfig,
@@ -69,13 +72,29 @@ class PlanningSetup:
             ScenarioError: the start is outside the limits, or not free of obstacles, or the work
                 area is out of reach.
         """
-        workcell = build_workcell(
-            self.robot, table=self.table, objects=self.objects, obstacles=self.obstacles
-        )
+        try:
+            workcell = build_workcell(
+                self.robot, table=self.table, objects=self.objects, obstacles=self.obstacles
+            )
+        except ModelError as error:
+            file = error.file or self.scenario.source
+            raise ModelError(error.message, remedy=error.remedy, file=file) from error
         check_start(self.scenario, workcell.arm)
         check_start_is_free(self.scenario, workcell)
         check_reach(self.scenario, workcell.arm, self.area)
         return workcell
+
+    @property
+    def meshes(self) -> dict[str, Path]:
+        """Files of the meshes in the workcell, by their places in the scenario."""
+        tool = self.robot.tool
+        shapes = {f"obstacles.{item.name}": item.shape for item in self.obstacles}
+        shapes |= {} if tool is None else {"robot.tool": tool.shape}
+        return {
+            place: shape.solid.file
+            for place, shape in shapes.items()
+            if isinstance(shape.solid, MeshShape)
+        }
 
     @cached_property
     def area(self) -> WorkArea:

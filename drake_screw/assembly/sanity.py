@@ -65,28 +65,35 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     Raises:
         ScenarioError: something does.
     """
-    obstacles = {body.name(): i for i, body in enumerate(workcell.obstacles)}
-    if not obstacles and workcell.tool is None:
+    if not workcell.obstacles and workcell.tool is None:
         return
     away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, FAR]
-    for pair in workcell.colliding_bodies(workcell.start, pose(np.eye(3), away)):
-        for held, other in (pair, pair[::-1]):
-            if workcell.tool is not None and held == workcell.tool.name():
-                raise ScenarioError(
-                    f"robot.tool.shape: the tool touches '{other}' at the start",
-                    remedy=f"If it may, as the fingers that grip it, name '{other}' in "
-                    "robot.tool.touches; otherwise make the shape smaller, move it, or change "
-                    "robot.start.",
-                    file=scenario.source,
-                )
-            if other in obstacles:
-                raise ScenarioError(
-                    f"obstacles.{obstacles[other]}: '{other}' touches the robot's '{held}' at the "
-                    "start",
-                    remedy="Move the obstacle, or change robot.start; xyz is the middle of the "
-                    f"shape, in metres, seen from '{scenario.robot.base}'.",
-                    file=scenario.source,
-                )
+    pairs = workcell.colliding_bodies(workcell.start, pose(np.eye(3), away))
+
+    def touching(name: str) -> list[str]:
+        return [other for pair in pairs if name in pair for other in pair if other != name]
+
+    held = [] if workcell.tool is None else touching(workcell.tool.name())
+    if held:
+        raise ScenarioError(
+            f"robot.tool.shape: the tool touches {_listed(held)} at the start",
+            remedy=f"If it may, as the fingers around it, write touches: [{', '.join(held)}] in "
+            "robot.tool; otherwise make the shape smaller, move it, or change robot.start.",
+            file=scenario.source,
+        )
+    for i, body in enumerate(workcell.obstacles):
+        links = touching(body.name())
+        if links:
+            raise ScenarioError(
+                f"obstacles.{i}: '{body.name()}' touches the robot's {_listed(links)} at the start",
+                remedy="Move the obstacle (xyz is in metres, seen from "
+                f"'{scenario.robot.base}'), or change robot.start.",
+                file=scenario.source,
+            )
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join(f"'{name}'" for name in names)
 
 
 def check_reach(scenario: Scenario, arm: Arm, area: WorkArea) -> None:

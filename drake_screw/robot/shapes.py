@@ -121,7 +121,12 @@ class PlacedShape:
 def register(
     plant: MultibodyPlant, body: RigidBody, shape: Shape, X_BG: RigidTransform, color: Array
 ) -> None:
-    """Give a body a look and a collision shape; the two are the same."""
+    """Give a body a look and a collision shape, which are the same.
+
+    A plant without a scene graph, which is for kinematics alone, gets neither.
+    """
+    if not plant.geometry_source_is_registered():
+        return
     plant.RegisterVisualGeometry(body, X_BG, shape, f"{body.name()}_look", color)
     plant.RegisterCollisionGeometry(
         body, X_BG, shape, f"{body.name()}_shape", CoulombFriction(0.8, 0.6)

@@ -24,7 +24,7 @@ class SphereBlock(Block):
 
 
 class ShapeBlock(Block):
-    box: Annotated[tuple[Positive, Positive, Positive], METRES] | None = None
+    box: Annotated[tuple[Positive, Positive, Positive] | None, METRES] = None
     """a box: its full sizes along x, y, z of its frame"""
     cylinder: CylinderBlock | None = None
     """a cylinder along z of its frame"""
