@@ -90,6 +90,17 @@ def test_the_tool_makes_plans_fail_that_the_hand_would_not(
     assert hit.bodies == (("tool", "wall"),)
 
 
+def test_a_tool_may_be_a_mesh(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(connection, "available", lambda: False)
+    (tmp_path / "stick.obj").write_text(CUBE)
+    wall = "{name: wall, box: [1.0, 0.02, 0.2], xyz: [0.7, 0, 0.3]}"
+    for scale, cause in ((0.05, Cause.SUCCESS), (0.3, Cause.COLLISION)):
+        tool = f"tool: {{shape: {{mesh: stick.obj, scale: {scale}, rpy: [3.1416, 0, 0]}}}}"
+        setup = Setup(scenario_in(tmp_path, wall, tool=tool))
+        lesson = lesson_of(setup.workcell, AWAY)
+        assert setup.evaluate([lesson], [[-1.0, -1.0]])[0, 0].cause == cause
+
+
 def test_a_start_among_obstacles_is_refused(tmp_path: Path) -> None:
     hand = Setup(scenario_in(tmp_path)).workcell.arm.pose(START)[:3, 3]
     xyz = f"[{', '.join(f'{c:.3f}' for c in hand)}]"
