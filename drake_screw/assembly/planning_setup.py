@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
-from drake_screw.assembly.sanity import check_reach, check_start
+from drake_screw.assembly.sanity import check_reach, check_start, check_start_is_free
 from drake_screw.assembly.symmetries import symmetries
 from drake_screw.assembly.workcell_parts import (
     object_configs,
+    obstacle_configs,
     robot_config,
     table_config,
     work_area,
 )
+from drake_screw.errors import ModelError
 from drake_screw.planning import BatchPlanner, Symmetries
 from drake_screw.planning.approach import seeds
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.robot import (
+    MeshShape,
     ObjectConfig,
+    ObstacleConfig,
     RobotConfig,
     TableConfig,
     Workcell,
@@ -40,7 +45,7 @@ class PlanningSetup:
 
     @cached_property
     def robot(self) -> RobotConfig:
-        """Which arm of which model."""
+        """Which arm of which model, and what it holds."""
         return robot_config(self.scenario)
 
     @cached_property
@@ -54,17 +59,42 @@ class PlanningSetup:
         return object_configs(self.scenario)
 
     @cached_property
+    def obstacles(self) -> tuple[ObstacleConfig, ...]:
+        """Other things that stand around."""
+        return obstacle_configs(self.scenario)
+
+    @cached_property
     def workcell(self) -> Workcell:
         """The Drake diagram.
 
         Raises:
-            ModelError: the model lacks a name.
-            ScenarioError: the start is outside the limits, or the work area out of reach.
+            ModelError: the model lacks a name, or a mesh cannot be read.
+            ScenarioError: the start is outside the limits, or not free of obstacles, or the work
+                area is out of reach.
         """
-        workcell = build_workcell(self.robot, table=self.table, objects=self.objects)
+        try:
+            workcell = build_workcell(
+                self.robot, table=self.table, objects=self.objects, obstacles=self.obstacles
+            )
+        except ModelError as error:
+            file = error.file or self.scenario.source
+            raise ModelError(error.message, remedy=error.remedy, file=file) from error
         check_start(self.scenario, workcell.arm)
+        check_start_is_free(self.scenario, workcell)
         check_reach(self.scenario, workcell.arm, self.area)
         return workcell
+
+    @property
+    def meshes(self) -> dict[str, Path]:
+        """Files of the meshes in the workcell, by their places in the scenario."""
+        tool = self.robot.tool
+        shapes = {f"obstacles.{item.name}": item.shape for item in self.obstacles}
+        shapes |= {} if tool is None else {"robot.tool": tool.shape}
+        return {
+            place: shape.solid.file
+            for place, shape in shapes.items()
+            if isinstance(shape.solid, MeshShape)
+        }
 
     @cached_property
     def area(self) -> WorkArea:

@@ -15,9 +15,12 @@ from drake_screw.assembly.kept import kept, named_recordings, teacher_recordings
 from drake_screw.assembly.preview_parts import (
     PreviewedArm,
     PreviewedObject,
+    PreviewedObstacle,
     PreviewedSamples,
+    PreviewedTool,
     PreviewedTree,
 )
+from drake_screw.assembly.sanity import Covered, covered_by_obstacles
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import CertifyOrSplit
 from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
@@ -37,7 +40,10 @@ class Preview:
     Attributes:
         scenario, description: its name, and its own words.
         robot: the arm that is planned for.
+        tool: what the end effector holds, if that has a shape.
         objects: where they may stand.
+        obstacles: what else stands around.
+        covered: obstacles in the work area.
         freedoms: symmetries that are taken for granted.
         approach: how the arm comes to the first guiding pose, "screw" or "free".
         regions: how many; None where they are adaptive.
@@ -64,7 +70,10 @@ class Preview:
     scenario: str
     description: str
     robot: PreviewedArm
+    tool: PreviewedTool | None
     objects: tuple[PreviewedObject, ...]
+    obstacles: tuple[PreviewedObstacle, ...]
+    covered: tuple[Covered, ...]
     freedoms: tuple[Freedom, ...]
     approach: str
     regions: int | None
@@ -94,8 +103,11 @@ class Preview:
     def _lines(self) -> Iterator[tuple[str, str]]:
         yield "scenario", f"{self.scenario}: {self.description}".rstrip(": ")
         yield "robot", f"{self.robot}, reach {self.robot.reach:.2f} m"
+        if self.tool is not None:
+            yield "tool", str(self.tool)
         yield from (("object", str(item)) for item in self.objects)
         yield from (("", f"  {freedom}") for freedom in self.freedoms)
+        yield from (("obstacle", str(item)) for item in self.obstacles)
         if self.approach == "free":
             yield "approach", "free: any joint motion to the first guiding pose"
         yield "regions", f"K = {self.regions}" if self.adaptive is None else str(self.adaptive)
@@ -119,6 +131,7 @@ class Preview:
                 f"the farthest corner of the work area is {self.farthest_corner:.2f} m from the "
                 "shoulder; only an object held long reaches there",
             )
+        yield from (("note", str(item)) for item in self.covered)
         if self.lacks_ompl:
             yield "note", connection.ABSENT
         rate = self.plans_per_second
@@ -158,7 +171,13 @@ def preview(scenario: Scenario) -> Preview:
         robot=PreviewedArm(
             setup.workcell.model_file.stem, arm.joint_names, arm.end_effector, chain.reach
         ),
+        tool=_tool(setup),
         objects=_objects(setup),
+        obstacles=tuple(
+            PreviewedObstacle(o.name, str(o.shape.solid), o.shape.xyz, o.shape.rpy)
+            for o in setup.obstacles
+        ),
+        covered=covered_by_obstacles(setup.workcell, setup.area),
         freedoms=freedoms(scenario),
         approach=scenario.planner.approach,
         regions=setup.regions.K if tree is None else None,
@@ -182,6 +201,13 @@ def preview(scenario: Scenario) -> Preview:
         samples=_samples(setup),
         plans_per_second=_plans_per_second(setup),
     )
+
+
+def _tool(setup: Setup) -> PreviewedTool | None:
+    tool = setup.robot.tool
+    if tool is None:
+        return None
+    return PreviewedTool(str(tool.shape.solid), tool.frame, tool.touches)
 
 
 def _objects(setup: Setup) -> tuple[PreviewedObject, ...]:

@@ -38,6 +38,35 @@ class PreviewedObject:
 
 
 @dataclass(frozen=True)
+class PreviewedTool:
+    """What the end effector holds: its shape in words, its frame's name, what it may touch."""
+
+    shape: str
+    frame: str
+    touches: tuple[str, ...]
+
+    def __str__(self) -> str:
+        touches = f", may touch {', '.join(self.touches)}" if self.touches else ""
+        return f"{self.shape}, fixed to '{self.frame}'{touches}"
+
+
+@dataclass(frozen=True)
+class PreviewedObstacle:
+    """A thing that stands around: its shape in words, x, y, z in m; roll, pitch, yaw in rad."""
+
+    name: str
+    shape: str
+    xyz: tuple[float, float, float]
+    rpy: tuple[float, float, float]
+
+    def __str__(self) -> str:
+        x, y, z = self.xyz
+        turned = ", ".join(f"{angle:g}" for angle in self.rpy)
+        how = f", turned by {turned} rad" if any(self.rpy) else ""
+        return f"{self.name}: {self.shape} at {x:g}, {y:g}, {z:g} m{how}"
+
+
+@dataclass(frozen=True)
 class PreviewedTree:
     """Adaptive regions: free axes, the smallest cell's share of the area, its failure level."""
 

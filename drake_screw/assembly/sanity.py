@@ -2,15 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from drake_screw.errors import ScenarioError
-from drake_screw.robot import Arm
+from drake_screw.robot import Arm, Workcell
 from drake_screw.scenario.schema import Scenario
+from drake_screw.screws import pose
 from drake_screw.tasks import WorkArea
 
 TOOL = 0.5
 """m. The end effector is never farther than this from the object that it works on."""
+
+FAR = 1e3
+"""m, where objects are that are to touch nothing."""
+PLACES = 25
+"""Along each axis of the work area, that are looked at for obstacles."""
+STANDS_IN = 1e-3
+"""m, that an object must be in an obstacle; one that stands on it is not."""
+
+
+@dataclass(frozen=True)
+class Covered:
+    """How much of an object's work area an obstacle takes up: there the two would overlap."""
+
+    obstacle: str
+    object: str
+    share: float
+
+    def __str__(self) -> str:
+        share = "all" if self.share >= 1.0 else f"about {max(self.share, 0.01):.0%}"
+        return (
+            f"obstacle '{self.obstacle}' is in the place of '{self.object}' in {share} of its work "
+            "area: the two would overlap there"
+        )
 
 
 def check_start(scenario: Scenario, arm: Arm) -> None:
@@ -29,6 +55,45 @@ def check_start(scenario: Scenario, arm: Arm) -> None:
             remedy="Start from a configuration that is strictly inside all joint limits.",
             file=scenario.source,
         )
+
+
+def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
+    """Check that no obstacle touches the robot at the start, nor anything what the robot holds.
+
+    Objects are left out: where they stand is not known yet.
+
+    Raises:
+        ScenarioError: something does.
+    """
+    if not workcell.obstacles and workcell.tool is None:
+        return
+    away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, FAR]
+    pairs = workcell.colliding_bodies(workcell.start, pose(np.eye(3), away))
+
+    def touching(name: str) -> list[str]:
+        return [other for pair in pairs if name in pair for other in pair if other != name]
+
+    held = [] if workcell.tool is None else touching(workcell.tool.name())
+    if held:
+        raise ScenarioError(
+            f"robot.tool.shape: the tool touches {_listed(held)} at the start",
+            remedy=f"If it may, as the fingers around it, write touches: [{', '.join(held)}] in "
+            "robot.tool; otherwise make the shape smaller, move it, or change robot.start.",
+            file=scenario.source,
+        )
+    for i, body in enumerate(workcell.obstacles):
+        links = touching(body.name())
+        if links:
+            raise ScenarioError(
+                f"obstacles.{i}: '{body.name()}' touches the robot's {_listed(links)} at the start",
+                remedy="Move the obstacle (xyz is in metres, seen from "
+                f"'{scenario.robot.base}'), or change robot.start.",
+                file=scenario.source,
+            )
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join(f"'{name}'" for name in names)
 
 
 def check_reach(scenario: Scenario, arm: Arm, area: WorkArea) -> None:
@@ -50,3 +115,39 @@ def check_reach(scenario: Scenario, arm: Arm, area: WorkArea) -> None:
                 f"seen from '{scenario.robot.base}'.",
                 file=scenario.source,
             )
+
+
+def covered_by_obstacles(workcell: Workcell, area: WorkArea) -> tuple[Covered, ...]:
+    """Obstacles that objects would stand inside somewhere in the work area, on a grid of places.
+
+    Nothing comes of it by itself: only with collisions checked, and only if the arm touches
+    something there, do plans fail.
+    """
+    plant, k = workcell.plant, len(area.objects)
+    if not workcell.obstacles:
+        return ()
+    root = workcell.diagram.CreateDefaultContext()
+    context = plant.GetMyMutableContextFromRoot(root)
+    graph = workcell.scene_graph.GetMyContextFromRoot(root)
+    shape = {
+        body.index(): plant.GetCollisionGeometriesForBody(body)[0]
+        for body in (*workcell.objects, *workcell.obstacles)
+    }
+    share = np.linspace(0.0, 1.0, PLACES)
+    inside = np.zeros((len(workcell.obstacles), k))
+    for x_share in share:
+        for y_share in share:
+            at = area.lower + np.array([x_share, y_share, 0.5]) * (area.upper - area.lower)
+            plant.SetPositions(context, workcell.positions(workcell.start, area.X_WO(at)))
+            query = workcell.scene_graph.get_query_output_port().Eval(graph)
+            for i, obstacle in enumerate(workcell.obstacles):
+                for j, body in enumerate(workcell.objects):
+                    pair = shape[obstacle.index()], shape[body.index()]
+                    distance = query.ComputeSignedDistancePairClosestPoints(*pair).distance
+                    inside[i, j] += distance < -STANDS_IN
+    return tuple(
+        Covered(obstacle.name(), area.objects[j].name, float(inside[i, j] / PLACES**2))
+        for i, obstacle in enumerate(workcell.obstacles)
+        for j in range(k)
+        if inside[i, j]
+    )

@@ -18,7 +18,8 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     """The scenario on another robot model.
 
     The model must have the arm's joints, the base and the end effector. Other joints that are
-    parked and that it lacks (those of a second arm, say) are left out. The robot that recordings
+    parked and that it lacks (those of a second arm, say) are left out, and so are links that it
+    lacks and that the tool may touch. The robot that recordings
     were made on stays as it is.
 
     Raises:
@@ -28,7 +29,7 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     block = scenario.robot.model_copy(update={"model": str(Path(model).resolve())})
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
-    add_robot(
+    _, instance, _ = add_robot(
         parser, RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
     )
     names = {plant.get_joint(i).name() for i in plant.GetJointIndices()}
@@ -42,4 +43,11 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
         )
     parked = {name: value for name, value in block.parked.items() if name in names}
     robot = block.model_copy(update={"parked": parked})
+    if block.tool is not None:
+        links = {plant.get_body(i).name() for i in plant.GetBodyIndices(instance)}
+        known = {"table", *links, *(o.name for o in scenario.objects)}
+        known |= {o.name for o in scenario.obstacles}
+        touches = tuple(name for name in block.tool.touches if name in known)
+        tool = block.tool.model_copy(update={"touches": touches})
+        robot = robot.model_copy(update={"tool": tool})
     return scenario.model_copy(update={"robot": robot})

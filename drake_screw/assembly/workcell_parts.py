@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
+from drake_screw.robot import (
+    BoxShape,
+    CylinderShape,
+    MeshShape,
+    ObjectConfig,
+    ObstacleConfig,
+    PlacedShape,
+    RobotConfig,
+    SphereShape,
+    TableConfig,
+    ToolConfig,
+)
 from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.tasks import ObjectArea, WorkArea
 
 
 def robot_config(scenario: Scenario) -> RobotConfig:
-    """Which arm of which model."""
+    """Which arm of which model, and what it holds."""
     block = scenario.robot
     return RobotConfig(
         str(block.model),
@@ -17,7 +29,17 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         block.start,
         block.base,
         block.parked,
+        tool_config(scenario),
     )
+
+
+def tool_config(scenario: Scenario) -> ToolConfig | None:
+    """What the end effector holds, if that has a shape."""
+    block = scenario.robot.tool
+    if block is None or block.shape is None:
+        return None
+    frame = block.frame or scenario.robot.end_effector
+    return ToolConfig(frame, placed_shape(block.shape), block.xyz, block.rpy, block.touches)
 
 
 def table_config(scenario: Scenario) -> TableConfig | None:
@@ -31,6 +53,26 @@ def table_config(scenario: Scenario) -> TableConfig | None:
 def object_configs(scenario: Scenario) -> tuple[ObjectConfig, ...]:
     """Shapes of the objects."""
     return tuple(ObjectConfig(o.name, o.radius, o.height) for o in scenario.objects)
+
+
+def obstacle_configs(scenario: Scenario) -> tuple[ObstacleConfig, ...]:
+    """Other things in the workcell."""
+    return tuple(ObstacleConfig(o.name, placed_shape(o)) for o in scenario.obstacles)
+
+
+def placed_shape(block: ShapeBlock) -> PlacedShape:
+    """A shape, and where it is."""
+    solid: BoxShape | CylinderShape | SphereShape | MeshShape
+    if block.box is not None:
+        solid = BoxShape(block.box)
+    elif block.cylinder is not None:
+        solid = CylinderShape(block.cylinder.radius, block.cylinder.length)
+    elif block.sphere is not None:
+        solid = SphereShape(block.sphere.radius)
+    else:
+        assert block.mesh is not None
+        solid = MeshShape(block.mesh, 1.0 if block.scale is None else block.scale)
+    return PlacedShape(solid, block.xyz, block.rpy)
 
 
 def work_area(scenario: Scenario) -> WorkArea:

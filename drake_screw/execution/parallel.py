@@ -13,7 +13,7 @@ from drake_screw.execution.station import Station, build_station
 from drake_screw.execution.timing import TimeLimits, time_plan
 from drake_screw.planning import Plan
 from drake_screw.processes import share_out
-from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
+from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.typing import Array
 
 KEPT = 8  # of that many samples of a log, one comes back from another process
@@ -37,18 +37,21 @@ class StationConfig:
     """What a process needs to build its station; unlike a plant, it can be sent.
 
     Attributes:
-        robot, table, objects: of the workcell.
+        robot, table, objects, obstacles: of the workcell.
         limits: how fast plans are executed.
     """
 
     robot: RobotConfig
     table: TableConfig | None = None
     objects: tuple[ObjectConfig, ...] = ()
+    obstacles: tuple[ObstacleConfig, ...] = ()
     limits: TimeLimits = field(default_factory=TimeLimits)
 
     def build(self) -> Station:
         """The station."""
-        return build_station(self.robot, table=self.table, objects=self.objects)
+        return build_station(
+            self.robot, table=self.table, objects=self.objects, obstacles=self.obstacles
+        )
 
 
 def execute_all(

@@ -10,7 +10,7 @@ from pydrake.geometry import Meshcat, MeshcatAnimation, MeshcatParams, Rgba
 
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.station import build_station
-from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
+from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.typing import Array
 
 FRAMES = 20  # a second
@@ -25,6 +25,7 @@ def recording_html(
     *,
     table: TableConfig | None = None,
     objects: Sequence[ObjectConfig] = (),
+    obstacles: Sequence[ObstacleConfig] = (),
 ) -> str:
     """A self-contained Meshcat page that plays executions, over and over.
 
@@ -32,10 +33,12 @@ def recording_html(
 
     Args:
         executions: each with the poses X_WO (k, 4, 4) of the objects.
-        robot, table, objects: as the executions had them.
+        robot, table, objects, obstacles: as the executions had them.
     """
     meshcat = Meshcat(MeshcatParams(host="localhost"))
-    station = build_station(robot, table=table, objects=objects, meshcat=meshcat)
+    station = build_station(
+        robot, table=table, objects=objects, obstacles=obstacles, meshcat=meshcat
+    )
     for path in ("/Grid", "/Axes"):
         meshcat.SetProperty(path, "visible", False)
     meshcat.SetProperty("/Background", "top_color", SKY[0])

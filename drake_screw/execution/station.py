@@ -1,4 +1,4 @@
-"""A workcell that moves: position-controlled robot, table, objects, and what executes plans."""
+"""A workcell that moves: position-controlled robot, what is around it, what executes plans."""
 
 from __future__ import annotations
 
@@ -34,8 +34,9 @@ from pydrake.systems.primitives import (
 
 from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
-from drake_screw.robot import Arm, ObjectConfig, RobotConfig, TableConfig
-from drake_screw.robot.workcell import add_object, add_robot, add_table
+from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.robot.tool import let_touch
+from drake_screw.robot.workcell import add_robot, add_surroundings
 from drake_screw.typing import Array
 
 Follower = ScrewPlanExecutor | JointPathSource
@@ -104,6 +105,7 @@ def build_station(
     *,
     table: TableConfig | None = None,
     objects: Sequence[ObjectConfig] = (),
+    obstacles: Sequence[ObstacleConfig] = (),
     follow_screws: bool = True,
     meshcat: Meshcat | None = None,
     time_step: float = 2.5e-3,
@@ -111,27 +113,29 @@ def build_station(
     """Build the diagram that executes plans.
 
     Args:
-        robot: which arm of which model, and where its other joints are held.
-        table, objects: of the workcell.
+        robot: which arm of which model, where its other joints are held, and what it holds, which
+            weighs nothing.
+        table, objects, obstacles: of the workcell.
         follow_screws: execute with `ScrewPlanExecutor`; else play the joint path.
         meshcat: to draw the simulation in.
         time_step: s, of the plant.
 
     Raises:
-        ModelError: the model cannot be read, or lacks a name the configuration asks for.
+        ModelError: the model or a mesh cannot be read, or the model lacks a name the configuration
+            asks for.
     """
     builder = DiagramBuilder()
     config = MultibodyPlantConfig(time_step=time_step, contact_model="point")
     plant, scene_graph = AddMultibodyPlant(config, builder)
     parser = Parser(plant)
-    _, instance = add_robot(parser, robot)
-    if table is not None:
-        add_table(plant, table)
-    bodies = tuple(add_object(plant, item) for item in objects)
+    _, instance, tool = add_robot(parser, robot)
+    _, bodies = add_surroundings(plant, table, objects, obstacles)
     _motorise(plant, instance)
     plant.set_gravity_enabled(instance, False)
     plant.Finalize()
     _ignore_contacts_of_objects(plant, scene_graph, instance)
+    if robot.tool is not None and tool is not None:
+        let_touch(plant, scene_graph, tool, robot.tool.touches)
     arm = _kinematics(robot)
     follower = builder.AddNamedSystem(
         "executor", ScrewPlanExecutor(arm) if follow_screws else JointPathSource(arm)
@@ -190,7 +194,7 @@ def _motorise(plant: MultibodyPlant, robot: ModelInstanceIndex) -> None:
 def _ignore_contacts_of_objects(
     plant: MultibodyPlant, scene_graph: SceneGraph, robot: ModelInstanceIndex
 ) -> None:
-    """Table and objects may touch one another: nothing of it matters to the robot."""
+    """Table, obstacles and objects may touch one another: nothing of it matters to the robot."""
     others = GeometrySet()
     for index in plant.GetBodyIndices(plant.world_body().model_instance()):
         others.Add(plant.GetCollisionGeometriesForBody(plant.get_body(index)))

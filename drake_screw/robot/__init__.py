@@ -1,7 +1,16 @@
 """The robot in Drake: workcell, arm, and the arm as a product of exponentials."""
 
 from drake_screw.robot.arm import Arm
+from drake_screw.robot.obstacles import ObstacleConfig
 from drake_screw.robot.screw_chain import ScrewChain
+from drake_screw.robot.shapes import (
+    BoxShape,
+    CylinderShape,
+    MeshShape,
+    PlacedShape,
+    SphereShape,
+)
+from drake_screw.robot.tool import ToolConfig
 from drake_screw.robot.workcell import (
     ObjectConfig,
     RobotConfig,
@@ -12,10 +21,17 @@ from drake_screw.robot.workcell import (
 
 __all__ = [
     "Arm",
+    "BoxShape",
+    "CylinderShape",
+    "MeshShape",
     "ObjectConfig",
+    "ObstacleConfig",
+    "PlacedShape",
     "RobotConfig",
     "ScrewChain",
+    "SphereShape",
     "TableConfig",
+    "ToolConfig",
     "Workcell",
     "build_workcell",
 ]

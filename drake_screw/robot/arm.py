@@ -46,7 +46,7 @@ class Arm:
         self.end_effector = end_effector
         self._context = plant.CreateDefaultContext()
         self._W = plant.world_frame()
-        self._E = _frame(plant, end_effector)
+        self._E = find_frame(plant, end_effector)
         joints = [_joint(plant, name) for name in self.joint_names]
         for joint in joints:
             if joint.type_name() not in ("revolute", "prismatic"):
@@ -129,7 +129,7 @@ class Arm:
         Raises:
             ModelError: there is no such frame, or it moves against the end effector.
         """
-        F = _frame(self.plant, frame)
+        F = find_frame(self.plant, frame)
         if F.body() not in self.plant.GetBodiesWeldedTo(self._E.body()):
             raise ModelError(
                 f"frame '{frame}' is not fixed to the end effector '{self.end_effector}'",
@@ -178,7 +178,12 @@ def _joint(plant: MultibodyPlant, name: str) -> Joint:
     return joints[name]
 
 
-def _frame(plant: MultibodyPlant, name: str) -> Frame:
+def find_frame(plant: MultibodyPlant, name: str) -> Frame:
+    """The frame of that name.
+
+    Raises:
+        ModelError: there is none, or more than one.
+    """
     frames = [plant.get_frame(FrameIndex(i)) for i in range(plant.num_frames())]
     matches = [frame for frame in frames if frame.name() == name]
     if len(matches) == 1:

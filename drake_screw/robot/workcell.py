@@ -7,14 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.geometry import Box, Cylinder, SceneGraph
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
-from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody, SpatialInertia
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
 from pydrake.planning import (
     CollisionCheckerParams,
     RobotDiagram,
@@ -25,6 +26,10 @@ from pydrake.planning import (
 from drake_screw.errors import ModelError, unknown
 from drake_screw.resources import MODEL_SUFFIXES, find_resource
 from drake_screw.robot.arm import Arm
+from drake_screw.robot.names import check_apart
+from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
+from drake_screw.robot.shapes import register
+from drake_screw.robot.tool import ToolConfig, add_tool, let_touch
 from drake_screw.screws import quaternion_from_rotation
 from drake_screw.typing import Array
 
@@ -37,7 +42,7 @@ MANY = 100
 
 @dataclass(frozen=True)
 class RobotConfig:
-    """Which arm of which model, and how it starts."""
+    """Which arm of which model, how it starts, and what it holds."""
 
     model: str
     joints: tuple[str, ...]
@@ -45,6 +50,7 @@ class RobotConfig:
     start: tuple[float, ...]
     base: str = "base"
     parked: Mapping[str, float] = field(default_factory=dict)
+    tool: ToolConfig | None = None
 
 
 @dataclass(frozen=True)
@@ -68,7 +74,7 @@ class ObjectConfig:
 
 @dataclass(frozen=True)
 class Workcell:
-    """Robot, table and objects in one Drake diagram.
+    """Robot, table, obstacles and objects in one Drake diagram.
 
     Objects are free bodies of the plant, so that one workcell serves every task instance: give
     their poses X_WO with each query.
@@ -78,8 +84,11 @@ class Workcell:
         arm: the arm that is planned for.
         start: (n,) rad, its start configuration.
         objects: the objects' bodies.
-        robot: the model instance of the robot.
+        robot: the model instance of the robot, and of what it holds.
         model_file: where the robot was read from.
+        checker: looks at collisions.
+        obstacles: the obstacles' bodies.
+        tool: the body of what the end effector holds, if that has a shape.
     """
 
     diagram: RobotDiagram
@@ -91,6 +100,8 @@ class Workcell:
     robot: ModelInstanceIndex
     model_file: Path
     checker: SceneGraphCollisionChecker
+    obstacles: tuple[RigidBody, ...] = ()
+    tool: RigidBody | None = None
 
     def positions(self, q: ArrayLike, X_WO: ArrayLike) -> Array:
         """Positions of the whole plant.
@@ -147,7 +158,9 @@ class Workcell:
         *,
         checker: SceneGraphCollisionChecker | None = None,
     ) -> Array:
-        """Whether the robot touches itself, the table or an object.
+        """Whether the robot touches itself, the table, an obstacle or an object.
+
+        What the end effector holds counts as the robot where it has a shape.
 
         Args:
             q: (m, n).
@@ -185,18 +198,18 @@ def build_workcell(
     *,
     table: TableConfig | None = None,
     objects: Sequence[ObjectConfig] = (),
+    obstacles: Sequence[ObstacleConfig] = (),
 ) -> Workcell:
-    """Build the diagram of a robot, a table and some objects.
+    """Build the diagram of a robot, a table, some objects and some obstacles.
 
     Raises:
-        ModelError: the model cannot be read, or lacks a name the configuration asks for.
+        ModelError: the model cannot be read, or lacks a name the configuration asks for; a mesh
+            cannot be read; two things have one name.
     """
     builder = RobotDiagramBuilder(time_step=0.0)
     plant: MultibodyPlant = builder.plant()
-    model_file, instance = add_robot(builder.parser(), robot)
-    if table is not None:
-        add_table(plant, table)
-    bodies = tuple(add_object(plant, item) for item in _named_apart(plant, objects))
+    model_file, instance, tool = add_robot(builder.parser(), robot)
+    fixed, bodies = add_surroundings(plant, table, objects, obstacles)
     plant.Finalize()
     arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
     if len(robot.start) != arm.n:
@@ -204,17 +217,36 @@ def build_workcell(
             f"the start configuration has {len(robot.start)} angles for {arm.n} joints"
         )
     scene_graph = builder.scene_graph()
+    if robot.tool is not None and tool is not None:
+        arm.held(robot.tool.frame)
+        let_touch(plant, scene_graph, tool, robot.tool.touches)
     diagram = builder.Build()
     arm.owner = diagram
     checker = SceneGraphCollisionChecker(
         CollisionCheckerParams(model=diagram, robot_model_instances=[instance], edge_step_size=0.05)
     )
     start = np.array(robot.start, dtype=float)
-    return Workcell(diagram, plant, scene_graph, arm, start, bodies, instance, model_file, checker)
+    return Workcell(
+        diagram, plant, scene_graph, arm, start, bodies, instance, model_file, checker, fixed, tool
+    )
 
 
-def add_robot(parser: Parser, robot: RobotConfig) -> tuple[Path, ModelInstanceIndex]:
-    """Read the robot's model into a plant and fix its base to the world where it is free."""
+class RobotInPlant(NamedTuple):
+    """A robot that was added to a plant: its model's file, its instance, and the body it holds."""
+
+    file: Path
+    instance: ModelInstanceIndex
+    tool: RigidBody | None
+
+
+def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
+    """Read the robot's model into a plant and fix its base to the world where it is free.
+
+    What it holds becomes a body of the same model instance.
+
+    Raises:
+        ModelError: the model or the tool's mesh cannot be read, or the model lacks a name.
+    """
     plant = parser.plant()
     file = find_resource("models", robot.model, MODEL_SUFFIXES)
     try:
@@ -232,7 +264,27 @@ def add_robot(parser: Parser, robot: RobotConfig) -> tuple[Path, ModelInstanceIn
     }
     if robot.base not in welded:
         plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(robot.base, instance))
-    return file, instance
+    tool = None if robot.tool is None else add_tool(plant, instance, robot.tool)
+    return RobotInPlant(file, instance, tool)
+
+
+def add_surroundings(
+    plant: MultibodyPlant,
+    table: TableConfig | None,
+    objects: Sequence[ObjectConfig] = (),
+    obstacles: Sequence[ObstacleConfig] = (),
+) -> tuple[tuple[RigidBody, ...], tuple[RigidBody, ...]]:
+    """Add what stands around a robot; returns the bodies of the obstacles and of the objects.
+
+    Raises:
+        ModelError: two things have one name, or a mesh cannot be read.
+    """
+    if table is not None:
+        add_table(plant, table)
+    check_apart(plant, "an obstacle", [item.name for item in obstacles])
+    fixed = tuple(add_obstacle(plant, item) for item in obstacles)
+    check_apart(plant, "an object", [item.name for item in objects])
+    return fixed, tuple(add_object(plant, item) for item in objects)
 
 
 def add_table(plant: MultibodyPlant, table: TableConfig) -> None:
@@ -241,26 +293,7 @@ def add_table(plant: MultibodyPlant, table: TableConfig) -> None:
     X_WT = RigidTransform([*table.center, table.top - table.thickness / 2.0])
     body = plant.AddRigidBody("table", plant.AddModelInstance("table"), SpatialInertia.Zero())
     plant.WeldFrames(plant.world_frame(), body.body_frame(), X_WT)
-    _add_shape(plant, body, box, RigidTransform(), WOOD)
-
-
-def _named_apart(plant: MultibodyPlant, objects: Sequence[ObjectConfig]) -> Sequence[ObjectConfig]:
-    instances = map(ModelInstanceIndex, range(plant.num_model_instances()))
-    bodies = map(BodyIndex, range(plant.num_bodies()))
-    joints = (plant.get_joint(i).name() for i in plant.GetJointIndices())
-    taken = {
-        *map(plant.GetModelInstanceName, instances),
-        *(plant.get_body(i).name() for i in bodies),
-        *joints,
-    }
-    for item in objects:
-        if item.name in taken:
-            raise ModelError(
-                f"the name '{item.name}' of an object is taken",
-                remedy="Name it unlike the table, other objects, and the robot's links and joints.",
-            )
-        taken.add(item.name)
-    return objects
+    register(plant, body, box, RigidTransform(), WOOD)
 
 
 def add_object(plant: MultibodyPlant, item: ObjectConfig) -> RigidBody:
@@ -268,18 +301,5 @@ def add_object(plant: MultibodyPlant, item: ObjectConfig) -> RigidBody:
     inertia = SpatialInertia.SolidCylinderWithMass(0.3, item.radius, item.height, [0, 0, 1])
     body = plant.AddRigidBody(item.name, plant.AddModelInstance(item.name), inertia)
     X_OC = RigidTransform([0.0, 0.0, item.height / 2.0])
-    _add_shape(plant, body, Cylinder(item.radius, item.height), X_OC, CLAY)
+    register(plant, body, Cylinder(item.radius, item.height), X_OC, CLAY)
     return body
-
-
-def _add_shape(
-    plant: MultibodyPlant,
-    body: RigidBody,
-    shape: Box | Cylinder,
-    X_BG: RigidTransform,
-    color: Array,
-) -> None:
-    plant.RegisterVisualGeometry(body, X_BG, shape, f"{body.name()}_look", color)
-    plant.RegisterCollisionGeometry(
-        body, X_BG, shape, f"{body.name()}_shape", CoulombFriction(0.8, 0.6)
-    )

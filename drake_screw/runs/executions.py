@@ -88,7 +88,7 @@ def execute(
     solved = np.flatnonzero(outcomes.any_success).tolist()
     best = {i: setup.plan(demonstrations, x_y_yaw[i], most=1) for i in solved}
     jobs = [Job(best[i].plan, X_WO[i]) for i in solved]
-    config = StationConfig(setup.robot, setup.table, setup.objects)
+    config = StationConfig(setup.robot, setup.table, setup.objects, setup.obstacles)
     done = dict(zip(solved, execute_all(config, jobs, workers=workers), strict=True))
     trials = []
     for i, place in enumerate(x_y_yaw):
@@ -112,7 +112,13 @@ def execute(
         ]
         if shown:
             with scratch():
-                page = recording_html(shown, setup.robot, table=setup.table, objects=setup.objects)
+                page = recording_html(
+                    shown,
+                    setup.robot,
+                    table=setup.table,
+                    objects=setup.objects,
+                    obstacles=setup.obstacles,
+                )
             (folder / "executions.html").write_text(page)
 
     folder = fresh_folder(opened.directory.path / "executions")
@@ -129,7 +135,9 @@ def station_graphviz(run: PathLike) -> str:
         DrakeScrewError: the run cannot be read.
     """
     setup = open_run(run).setup
-    return build_station(setup.robot, table=setup.table, objects=setup.objects).graphviz
+    return build_station(
+        setup.robot, table=setup.table, objects=setup.objects, obstacles=setup.obstacles
+    ).graphviz
 
 
 def _check_masses(setup: Setup) -> None:

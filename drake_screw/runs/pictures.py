@@ -13,6 +13,7 @@ from drake_screw.files import writing
 from drake_screw.runs.directory import UNWRITABLE_RUN
 from drake_screw.visualization import Scene, save_heat_map, save_run_figure
 from drake_screw.visualization.lifetime import scratch
+from drake_screw.visualization.outlines import outlines
 
 PICTURE = "rounds.png"
 """The course of the whole run."""
@@ -20,7 +21,8 @@ PICTURE = "rounds.png"
 
 def draw_round(setup: Setup, event: RoundFinished, stem: Path) -> None:
     """Draw a round as ``<stem>.png`` and ``<stem>.svg``."""
-    save_heat_map(event, event.regions, stem, scenario=setup.scenario.name)
+    things = outlines(setup.obstacles)
+    save_heat_map(event, event.regions, stem, scenario=setup.scenario.name, things=things)
 
 
 def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> None:
@@ -34,7 +36,14 @@ def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> Non
     name, regions = setup.scenario.name, [event.regions for event in rounds]
     stem = folder / PICTURE.removesuffix(".png")
     with writing(folder, UNWRITABLE_RUN):
-        save_run_figure(rounds, regions, stem, scenario=name, beta=setup.goal.beta)
+        save_run_figure(
+            rounds,
+            regions,
+            stem,
+            scenario=name,
+            beta=setup.goal.beta,
+            things=outlines(setup.obstacles),
+        )
         with scratch():
             _save_scene(setup, rounds, folder / "meshcat.html")
 
@@ -57,4 +66,5 @@ def make_scene(setup: Setup, meshcat: Meshcat | None = None) -> Scene:
         setup.objects,
         setup.area,
         scenario=setup.scenario.name,
+        obstacles=setup.obstacles,
     )

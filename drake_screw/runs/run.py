@@ -223,7 +223,7 @@ def new_run(scenario: Scenario, output: PathLike | None = None, **parts: Unpack[
         regions=setup.regions.K if setup.tree is None else "adaptive",
         passed_in=setup.passed_in,
         model=str(setup.workcell.model_file),
-        hashes={name: file_hash(file) for name, file in _models(setup).items()},
+        hashes={name: file_hash(file) for name, file in _files(setup).items()},
         versions=versions(),
         started=now(),
         finished=None,
@@ -243,7 +243,7 @@ def open_run(path: PathLike, **parts: Unpack[Parts]) -> Run:
         parts: passed on to `Setup`; those the run was begun with, to carry it on.
 
     Raises:
-        RunDirectoryError: it is not one, is damaged, or the robot model is not the same any more.
+        RunDirectoryError: it is not one, is damaged, or a model or mesh is not the same any more.
     """
     path = Path(path)
     directory = RunDirectory.open(path)
@@ -257,20 +257,22 @@ def open_run(path: PathLike, **parts: Unpack[Parts]) -> Run:
             file=path / SCENARIO,
             line=error.line,
         ) from error
-    for name, model in _models(setup).items():
-        if file_hash(model) != directory.record.hashes.get(name):
+    for name, file in _files(setup).items():
+        if file_hash(file) != directory.record.hashes.get(name):
+            what = "mesh" if name in setup.meshes else "robot model"
             raise RunDirectoryError(
-                f"the robot model {model} has changed since this run",
-                remedy="Put the model back as it was, or run the scenario again.",
+                f"the {what} {file} has changed since this run",
+                remedy="Put the file back as it was, or run the scenario again.",
                 file=path,
             )
     return Run(setup, directory)
 
 
-def _models(setup: Setup) -> dict[str, Path]:
-    """The model files that a run depends on."""
+def _files(setup: Setup) -> dict[str, Path]:
+    """The models and meshes that a run depends on."""
     other = setup.recorder.model_file
-    return {"model": setup.workcell.model_file, **({} if other is None else {"recorded_on": other})}
+    models = {"model": setup.workcell.model_file}
+    return models | ({} if other is None else {"recorded_on": other}) | setup.meshes
 
 
 def resumable(run: Run) -> Run:

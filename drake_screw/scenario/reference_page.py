@@ -103,7 +103,10 @@ _RULES = """\
   part of your own, as `package.module:Object`, or one that an installed package declares as an
   entry point. Only such a teacher may have further keys: it is given them as options, texts as they
   are written.
-- Object names differ; the range of a yaw is no wider than a full turn; the work area is within
+- `robot.tool.shape` and every obstacle have one shape: `box`, `cylinder`, `sphere` or `mesh`;
+  `scale` is for a mesh. At the start nothing touches the tool, and no obstacle the robot.
+- Names of objects and obstacles differ, also from the table and from the robot's links, frames and
+  joints; the range of a yaw is no wider than a full turn; the work area is within
   reach of the arm.
 """
 

@@ -19,6 +19,7 @@ from drake_screw.scenario.run_blocks import (
     TeacherBlock,
 )
 from drake_screw.scenario.segmentation_block import SegmentationBlock
+from drake_screw.scenario.shape_blocks import ObstacleBlock
 from drake_screw.scenario.values import Name
 from drake_screw.scenario.workcell_blocks import (
     ObjectBlock,
@@ -46,6 +47,8 @@ class Scenario(Block):
     """the table, a box; leave it out for none"""
     objects: tuple[ObjectBlock, ...]
     """the objects of the task, and where they may lie"""
+    obstacles: tuple[ObstacleBlock, ...] = ()
+    """other things in the workcell that never move, placed in the world's frame"""
     regions: RegionsBlock
     """how the work area is divided"""
     coverage: CoverageBlock = CoverageBlock()
@@ -105,6 +108,13 @@ class Scenario(Block):
                 "Give every object a name of its own.",
             )
         names = [o.name for o in self.objects]
+        for index, name in repeated([*names, *(o.name for o in self.obstacles)]):
+            if index >= len(names):
+                yield Problem(
+                    ("obstacles", index - len(names), "name"),
+                    f"there is another thing named '{name}'",
+                    "Give every object and every obstacle a name of its own.",
+                )
         for index, name in enumerate(self.demonstrations.objects):
             if name not in names:
                 yield Problem(

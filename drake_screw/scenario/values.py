@@ -116,7 +116,7 @@ def _absolute(text: str) -> str:
     return os.path.abspath(folder / os.path.expanduser(text))
 
 
-def _folder(value: Any) -> Any:
+def _path(value: Any) -> Any:
     return Path(_absolute(value)) if isinstance(value, str) and value else value
 
 
@@ -137,8 +137,11 @@ ModelName = Annotated[
 ]
 """The name of a shipped model, or the path of one; a relative path becomes absolute."""
 
-Folder = Annotated[Path, BeforeValidator(_folder)]
+Folder = Annotated[Path, BeforeValidator(_path)]
 """A path, absolute: a relative one is seen from the file, or the place, it is written in."""
+
+MeshFile = Annotated[Path, BeforeValidator(_path)]
+"""The path of a mesh, absolute likewise."""
 
 Name = Annotated[str, Field(pattern=NAME_PATTERN)]
 Positive = Annotated[float, Field(gt=0)]

@@ -1,4 +1,4 @@
-"""What a scenario file may say of the workcell: arms, table and objects."""
+"""What a scenario file may say of the workcell: arms, what they hold, table and objects."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.scenario.values import (
     METRES,
     RADIANS,
@@ -98,6 +99,20 @@ class ToolBlock(Block):
     """how it is turned there: roll, pitch and yaw"""
     symmetry: SymmetryBlock | None = None
     """how it may be turned about an axis and do the same; left out if it may not"""
+    shape: ShapeBlock | None = None
+    """its shape, placed in the tool's frame, for collisions and to draw it; a part of the robot
+    that moves with the end effector"""
+    touches: tuple[str, ...] = ()
+    """names of links, of the table, obstacles and objects that the shape may touch, such as the
+    fingers around it; it always may touch the links that are rigidly fixed to it"""
+
+    def broken_rules(self) -> Iterator[Problem]:
+        for index, name in repeated(self.touches):
+            yield Problem(("touches", index), f"'{name}' is listed twice")
+        if self.touches and self.shape is None:
+            yield Problem(
+                ("touches",), "a tool without a shape touches nothing", "Give it a shape."
+            )
 
 
 class ObjectBlock(Block):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
@@ -20,8 +20,10 @@ from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
     add_colour_bar,
     draw_heat_map,
+    extent,
     legend_handles,
 )
+from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK, failure_map
 from drake_screw.visualization.rounds import Round, cells
 
@@ -125,6 +127,7 @@ def comparison_figure(
     *,
     scenario: str = "",
     note: str = "",
+    things: Sequence[Outline] = (),
 ) -> Figure:
     """Two evaluations of the same demonstrations side by side: with few regions, with many.
 
@@ -133,9 +136,11 @@ def comparison_figure(
         regions: of each.
         scenario: its name, for the title.
         note: written below the title.
+        things: obstacles in the work area or near it.
     """
     seen = cells(regions[0], rounds[0].verdict.estimates)
-    depth, width = seen.upper.max(axis=0) - seen.lower.min(axis=0)
+    lower, upper = extent(seen, things)
+    depth, width = upper - lower
     height = float(np.clip(4.8 * depth / max(width, 1e-9), 1.6, 4.8))
     figure = Figure(figsize=(11.0, height + 1.9), layout="constrained")
     grid = figure.add_gridspec(1, 3, width_ratios=[1, 1, 0.03])
@@ -143,8 +148,8 @@ def comparison_figure(
     for i, (event, parts) in enumerate(zip(rounds, regions, strict=True)):
         ax = figure.add_subplot(grid[i])
         figure.get_layout_engine().execute(figure)
-        shown = draw_heat_map(ax, event, parts, dots=DOTS)
-        handles |= {h.get_label(): h for h in legend_handles(event, shown)}
+        shown = draw_heat_map(ax, event, parts, dots=DOTS, things=things)
+        handles |= {h.get_label(): h for h in legend_handles(event, shown, things)}
         ax.set_title(_headline(event, parts), fontsize=10, color=INK, loc="left")
     add_colour_bar(figure, figure.add_subplot(grid[2]))
     count = len(rounds[0].demonstrations)
@@ -171,9 +176,11 @@ def save_comparison(
     *,
     scenario: str = "",
     note: str = "",
+    things: Sequence[Outline] = (),
 ) -> tuple[Path, Path]:
     """Write `comparison_figure` as ``<stem>.png`` and ``<stem>.svg``."""
-    return save_figure(comparison_figure(rounds, regions, scenario=scenario, note=note), stem)
+    figure = comparison_figure(rounds, regions, scenario=scenario, note=note, things=things)
+    return save_figure(figure, stem)
 
 
 def _headline(event: Round, regions: GridRegions) -> str:

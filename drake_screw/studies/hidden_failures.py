@@ -15,6 +15,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.studies.experiment import Experiment, StudyRun, run_seed, split
 from drake_screw.studies.figures import save_comparison
 from drake_screw.tasks import GridRegions, draw_in_all
+from drake_screw.visualization.outlines import outlines
 
 MOST_RUNS = 20
 EACH = 1024
@@ -78,6 +79,7 @@ def draw_hidden_failure(experiment: Experiment, runs: Sequence[StudyRun], stem: 
         stem,
         scenario=setup.scenario.name,
         note=note,
+        things=outlines(setup.obstacles),
     )
 
 

@@ -201,7 +201,9 @@ def new_study(
         "seed": scenario.seed,
         "strategy": scenario.coverage.strategy,
         "model": str(model),
-        "hashes": {"model": file_hash(model)},
+        "hashes": {
+            name: file_hash(file) for name, file in ({"model": model} | setup.meshes).items()
+        },
         "versions": versions(),
         "started": now(),
         "finished": None,
@@ -218,7 +220,7 @@ def open_study(path: PathLike) -> Study:
     """Open a study directory, to carry it on or to draw its pictures again.
 
     Raises:
-        RunDirectoryError: it is not one, is damaged, or the robot model is not the same any more.
+        RunDirectoryError: it is not one, is damaged, or a model or mesh is not the same any more.
     """
     path = Path(path)
     file = path / STUDY
@@ -230,8 +232,8 @@ def open_study(path: PathLike) -> Study:
         )
     try:
         record = json.loads(file.read_text())
-        found, model = record["format"], record["hashes"]["model"]
-        if not {"regions", "runs"} <= record.keys():
+        found, hashes = record["format"], dict(record["hashes"])
+        if not {"regions", "runs"} <= record.keys() or "model" not in hashes:
             raise KeyError("keys are missing")
     except (ValueError, KeyError, TypeError) as error:
         raise RunDirectoryError(
@@ -244,13 +246,15 @@ def open_study(path: PathLike) -> Study:
             file=file,
         )
     study = Study(path, load_stored_scenario(path / SCENARIO), record)
-    used = study.experiment.setup.workcell.model_file
-    if file_hash(used) != model:
-        raise RunDirectoryError(
-            f"the robot model {used} has changed since this study began",
-            remedy="Put the model back as it was, or begin the study again.",
-            file=path,
-        )
+    setup = study.experiment.setup
+    for name, used in ({"model": setup.workcell.model_file} | setup.meshes).items():
+        if file_hash(used) != hashes.get(name):
+            what = "mesh" if name in setup.meshes else "robot model"
+            raise RunDirectoryError(
+                f"the {what} {used} has changed since this study began",
+                remedy="Put the file back as it was, or begin the study again.",
+                file=path,
+            )
     return study
 
 

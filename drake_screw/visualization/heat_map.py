@@ -5,6 +5,7 @@ x grows upwards, away from the robot; y grows to the left, as it does for the ro
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -20,8 +21,10 @@ from matplotlib.patheffects import withStroke
 
 from drake_screw.planning import Cause
 from drake_screw.tasks import Regions
+from drake_screw.typing import Array
 from drake_screw.visualization.cell_text import MARK, write_estimates
 from drake_screw.visualization.figure_files import save_figure
+from drake_screw.visualization.outlines import Outline, draw_outlines, outline_handle, widened
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -45,7 +48,13 @@ GRID = "#b9b4c6"
 
 
 def draw_heat_map(
-    ax: Axes, event: Round, regions: Regions, *, dots: int = MOST_DOTS, text: bool = True
+    ax: Axes,
+    event: Round,
+    regions: Regions,
+    *,
+    dots: int = MOST_DOTS,
+    text: bool = True,
+    things: Sequence[Outline] = (),
 ) -> Sample:
     """Draw one round into `ax`: estimates, instances, demonstrations, weakest region, suggestion.
 
@@ -57,18 +66,21 @@ def draw_heat_map(
         event: the round.
         regions: those of the run.
         dots: most instances to draw; more are thinned to a random sample.
-        text: write estimates and counts into the cells, and numbers at the demonstrations.
+        text: write estimates and counts into the cells, numbers at the demonstrations, and names of
+            obstacles.
+        things: obstacles in the work area or near it.
 
     Returns:
         The instances that were drawn.
     """
     drawn = cells(regions, event.verdict.estimates)
     shown = sample(event.evaluation, dots)
-    _frame(ax, drawn)
+    _frame(ax, drawn, things)
     _draw_cells(ax, drawn, event)
     _draw_instances(ax, drawn, shown)
     if text:
         write_estimates(ax, drawn, event)
+    draw_outlines(ax, things, text=text)
     _draw_robot(ax, text)
     _draw_demonstrations(ax, drawn, event, text)
     if event.suggestion is not None:
@@ -79,18 +91,24 @@ def draw_heat_map(
 
 
 def heat_map_figure(
-    event: Round, regions: Regions, *, scenario: str = "", dots: int = MOST_DOTS
+    event: Round,
+    regions: Regions,
+    *,
+    scenario: str = "",
+    dots: int = MOST_DOTS,
+    things: Sequence[Outline] = (),
 ) -> Figure:
     """A figure of one round with title, colour bar and legend; not registered with pyplot."""
     drawn = cells(regions, event.verdict.estimates)
-    depth, width = drawn.upper.max(axis=0) - drawn.lower.min(axis=0)
+    lower, upper = extent(drawn, things)
+    depth, width = upper - lower
     height = float(np.clip(7.6 * depth / max(width, 1e-9), 2.2, 7.6))
     caption = fill(_caption(event, regions, drawn), 120)
-    height += 0.2 * caption.count("\n")
+    height += 0.2 * caption.count("\n") + (0.3 if things else 0.0)
     figure = Figure(figsize=(9.6, height + 1.6), layout="constrained")
     ax = figure.add_subplot()
     figure.get_layout_engine().execute(figure)
-    shown = draw_heat_map(ax, event, regions, dots=dots)
+    shown = draw_heat_map(ax, event, regions, dots=dots, things=things)
     title = f"{scenario}: {headline(event)}" if scenario else headline(event)
     blank = "\n" * (1 + caption.count("\n"))
     ax.set_title(title + blank, fontsize=12, fontweight="bold", loc="left", color=INK)
@@ -98,7 +116,7 @@ def heat_map_figure(
     ax.annotate(caption, (0, 1), xycoords="axes fraction", fontsize=8.5, color=INK, **offset)
     add_colour_bar(figure, ax.inset_axes((1.015, 0.0, 0.02, 1.0)))
     figure.legend(
-        handles=legend_handles(event, shown),
+        handles=legend_handles(event, shown, things),
         title=shown.statement,
         title_fontsize=8.5,
         fontsize=8.5,
@@ -118,13 +136,15 @@ def save_heat_map(
     *,
     scenario: str = "",
     dots: int = MOST_DOTS,
+    things: Sequence[Outline] = (),
 ) -> tuple[Path, Path]:
     """Write `heat_map_figure` as ``<stem>.png`` and ``<stem>.svg``, the same bytes every time.
 
     Returns:
         The two files.
     """
-    return save_figure(heat_map_figure(event, regions, scenario=scenario, dots=dots), stem)
+    figure = heat_map_figure(event, regions, scenario=scenario, dots=dots, things=things)
+    return save_figure(figure, stem)
 
 
 def add_colour_bar(figure: Figure, ax: Axes) -> None:
@@ -134,7 +154,9 @@ def add_colour_bar(figure: Figure, ax: Axes) -> None:
     ax.tick_params(labelsize=8)
 
 
-def legend_handles(event: Round, shown: Sample) -> list[Line2D | Patch]:
+def legend_handles(
+    event: Round, shown: Sample, things: Sequence[Outline] = ()
+) -> list[Line2D | Patch]:
     """Legend entries of what a heat map of this round contains."""
     handles: list[Line2D | Patch] = [
         Line2D([], [], **_dot(cause), label=name)
@@ -148,7 +170,14 @@ def legend_handles(event: Round, shown: Sample) -> list[Line2D | Patch]:
         handles.append(
             Line2D([], [], **_marker("*", ACCENT, 14.0, INK), label="next demonstration")
         )
+    if things:
+        handles.append(outline_handle())
     return handles
+
+
+def extent(drawn: Cells, things: Sequence[Outline] = ()) -> tuple[Array, Array]:
+    """Least and greatest x, y (2,) in m that a picture of cells and of things near them shows."""
+    return widened(drawn.lower.min(axis=0), drawn.upper.max(axis=0), things)
 
 
 def _caption(event: Round, regions: Regions, drawn: Cells) -> str:
@@ -162,8 +191,8 @@ def _caption(event: Round, regions: Regions, drawn: Cells) -> str:
     return "; ".join(parts)
 
 
-def _frame(ax: Axes, drawn: Cells) -> None:
-    lower, upper = drawn.lower.min(axis=0), drawn.upper.max(axis=0)
+def _frame(ax: Axes, drawn: Cells, things: Sequence[Outline]) -> None:
+    lower, upper = extent(drawn, things)
     pad = np.where(upper > lower, 0.0, 0.05)
     ax.set_xlim(upper[1] + pad[1], lower[1] - pad[1])
     ax.set_ylim(lower[0] - pad[0], upper[0] + pad[0])

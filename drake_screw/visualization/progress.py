@@ -16,8 +16,10 @@ from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
     add_colour_bar,
     draw_heat_map,
+    extent,
     legend_handles,
 )
+from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK, OUTCOME_COLORS, failure_map
 from drake_screw.visualization.rounds import Round, Sample, cells
 
@@ -95,6 +97,7 @@ def run_figure(
     *,
     scenario: str = "",
     beta: float | None = None,
+    things: Sequence[Outline] = (),
 ) -> Figure:
     """Small heat maps of all rounds above the progress of the weakest region.
 
@@ -103,11 +106,13 @@ def run_figure(
         regions: those of each round.
         scenario: its name, for the title.
         beta: coverage asked for.
+        things: obstacles in the work area or near it.
     """
     columns = min(COLUMNS, len(events))
     rows = -(-len(events) // columns)
     drawn = cells(regions[0], events[0].verdict.estimates)
-    depth, width = drawn.upper.max(axis=0) - drawn.lower.min(axis=0)
+    lower, upper = extent(drawn, things)
+    depth, width = upper - lower
     row = float(np.clip(3.4 * depth / max(width, 1e-9), 0.9, 3.4)) + 0.55
     figure = Figure(figsize=(11.0, rows * row + 3.4), layout="constrained")
     grid = figure.add_gridspec(
@@ -119,7 +124,8 @@ def run_figure(
     shown: list[tuple[Round, Sample]] = []
     for i, event in enumerate(events):
         ax = figure.add_subplot(grid[i // columns, i % columns])
-        shown.append((event, draw_heat_map(ax, event, regions[i], dots=DOTS, text=False)))
+        look = draw_heat_map(ax, event, regions[i], dots=DOTS, text=False, things=things)
+        shown.append((event, look))
         count = len(event.demonstrations)
         title = f"round {event.round + 1}: {count} demonstration{'' if count == 1 else 's'}"
         ax.set_title(title, fontsize=9, color=INK)
@@ -130,7 +136,7 @@ def run_figure(
     draw_progress(figure.add_subplot(grid[rows, :]), events, regions, beta=beta)
     if scenario:
         figure.suptitle(scenario, fontsize=13, fontweight="bold", color=INK, x=0.01, ha="left")
-    seen = {h.get_label(): h for event, s in shown for h in legend_handles(event, s)}
+    seen = {h.get_label(): h for event, s in shown for h in legend_handles(event, s, things)}
     figure.legend(
         handles=list(seen.values()),
         loc="outside lower center",
@@ -150,10 +156,12 @@ def save_run_figure(
     *,
     scenario: str = "",
     beta: float | None = None,
+    things: Sequence[Outline] = (),
 ) -> tuple[Path, Path]:
     """Write `run_figure` as ``<stem>.png`` and ``<stem>.svg``, the same bytes every time.
 
     Returns:
         The two files.
     """
-    return save_figure(run_figure(events, regions, scenario=scenario, beta=beta), stem)
+    figure = run_figure(events, regions, scenario=scenario, beta=beta, things=things)
+    return save_figure(figure, stem)

@@ -1,8 +1,8 @@
 """The workcell in Meshcat, with the heat map lying on the table.
 
 Everything hangs under these paths of the scene tree, where the browser's control panel can hide it:
-``/workcell`` (robot and table), ``/work_area``, ``/objects``, ``/demonstrations/01``, ...,
-``/instances`` (the last round's) and ``/rounds/01``, ....
+``/workcell`` (robot, table and obstacles), ``/work_area``, ``/objects``, ``/demonstrations/01``,
+..., ``/instances`` (the last round's) and ``/rounds/01``, ....
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from pydrake.planning import RobotDiagramBuilder
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause
-from drake_screw.robot import Arm, ObjectConfig, RobotConfig, TableConfig
-from drake_screw.robot.workcell import add_robot, add_table
+from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.robot.workcell import add_robot, add_surroundings
 from drake_screw.tasks import Regions, WorkArea
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes
@@ -62,9 +62,11 @@ class Scene:
         area: the work area.
         scenario: its name, for the legend of the saved page.
         dots: most instances to draw of a round; more are thinned to a random sample.
+        obstacles: drawn where they are.
 
     Raises:
-        ModelError: the robot's model cannot be read, or lacks a name the configuration asks for.
+        ModelError: the robot's model or a mesh cannot be read, or the model lacks a name the
+            configuration asks for.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class Scene:
         *,
         scenario: str = "",
         dots: int = MOST_DOTS,
+        obstacles: Sequence[ObstacleConfig] = (),
     ) -> None:
         self.meshcat = meshcat
         self._objects = tuple(objects)
@@ -93,7 +96,7 @@ class Scene:
         meshcat.SetProperty("/Axes", "visible", False)
         meshcat.SetProperty("/Background", "top_color", SKY[0])
         meshcat.SetProperty("/Background", "bottom_color", SKY[1])
-        _draw_workcell(meshcat, robot, table)
+        _draw_workcell(meshcat, robot, table, obstacles)
         self._draw_area()
         self._aim_camera()
 
@@ -246,12 +249,16 @@ def _round_path(number: int) -> str:
     return f"/rounds/{number + 1:02d}"
 
 
-def _draw_workcell(meshcat: Meshcat, robot: RobotConfig, table: TableConfig | None) -> None:
+def _draw_workcell(
+    meshcat: Meshcat,
+    robot: RobotConfig,
+    table: TableConfig | None,
+    obstacles: Sequence[ObstacleConfig],
+) -> None:
     builder = RobotDiagramBuilder(time_step=0.0)
     plant = builder.plant()
     add_robot(builder.parser(), robot)
-    if table is not None:
-        add_table(plant, table)
+    add_surroundings(plant, table, obstacles=obstacles)
     plant.Finalize()
     arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
     parameters = MeshcatVisualizerParams(prefix="/workcell")

@@ -12,6 +12,7 @@ from drake_screw.planning import Cause
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import FAILED, Attempt
+from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -112,7 +113,12 @@ def joint_chart(attempt: Attempt) -> Markup:
 
 
 def work_area_map(
-    event: Round, regions: Regions, *, here: Array | None = None, dots: int = MAP_DOTS
+    event: Round,
+    regions: Regions,
+    *,
+    here: Array | None = None,
+    dots: int = MAP_DOTS,
+    things: Sequence[Outline] = (),
 ) -> Markup:
     """The work area from above, as the heat map shows it, small and light.
 
@@ -124,6 +130,7 @@ def work_area_map(
         regions: of the run.
         here: (k, 3) an instance to mark.
         dots: of so many instances, drawn at random, those that fail are drawn.
+        things: obstacles, which are drawn as far as they are in the work area.
     """
     drawn = cells(regions, event.verdict.estimates)
     (x0, y0), (x1, y1) = drawn.lower.min(axis=0), drawn.upper.max(axis=0)
@@ -150,6 +157,12 @@ def work_area_map(
             parts.append(
                 f'<path d="{path}" stroke="{color}" stroke-width="9" stroke-linecap="round"/>'
             )
+    for thing in things:
+        edge = " ".join(f"{u:.0f},{v:.0f}" for u, v in (place(x, y) for x, y in thing.corners))
+        parts.append(
+            f'<polygon points="{edge}" fill="{PAPER}" fill-opacity="0.45" stroke="{INK}" '
+            f'stroke-width="5" pointer-events="none" class="obstacle"/>'
+        )
     for number, demonstration in enumerate(event.demonstrations, start=1):
         u, v = place(*demonstration.X_WO[drawn.object, :2, 3])
         parts.append(

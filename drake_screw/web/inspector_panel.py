@@ -19,6 +19,7 @@ from drake_screw.visualization.attempt import (
     headline,
 )
 from drake_screw.visualization.inspector import Drawn
+from drake_screw.visualization.outlines import outlines
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
 from drake_screw.visualization.rounds import headline as round_headline
 from drake_screw.visualization.rounds import sample
@@ -81,7 +82,7 @@ def panel_state(
         "attempts": attempts,
         "selected": selection.demonstration,
         "headline": round_headline(event),
-        "map": work_area_map(event, regions, here=here),
+        "map": work_area_map(event, regions, here=here, things=outlines(reader.setup.obstacles)),
         "map_words": map_words(event, sample(event.evaluation, MOST_DOTS)),
     }
 

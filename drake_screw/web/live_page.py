@@ -24,6 +24,7 @@ from drake_screw.runs.narration import describe
 from drake_screw.runs.pictures import make_scene
 from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.visualization.meshcat_page import render
+from drake_screw.visualization.outlines import outlines
 from drake_screw.visualization.palette import (
     ACCENT,
     INK,
@@ -179,7 +180,7 @@ class LivePage:
             headline=f"round {number}: {'certified' if verdict.certified else 'not certified'}",
             details=f"weakest region {weakest}: {event.regions.name(weakest)}; {verdict.reason}",
             color=color,
-            map=work_area_map(event, event.regions),
+            map=work_area_map(event, event.regions, things=outlines(self._setup.obstacles)),
             map_words=f"after round {number}; {map_words(event, shown)}",
             rounds=[*self._state["rounds"], line],
         )

@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 
 from drake_screw.acquisition import RoundFinished
+from drake_screw.assembly.setup import Setup
 from drake_screw.files import write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.runs.reader import RunReader
-from drake_screw.visualization.attempt import headline
+from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES
@@ -167,7 +169,7 @@ def _instance(
         ],
         "best": best.number + 1,
         "chart": joint_chart(best),
-        "sketch": arm_sketch(best, linkage, setup.area, setup.objects, setup.table),
+        "sketch": _sketch(best, linkage, setup),
     }
 
 
@@ -193,12 +195,24 @@ def _others(reader: RunReader, selection: Selection, linkage: Linkage) -> list[d
                 "number": instance,
                 "best": best + 1,
                 "headline": headline(tried),
-                "sketch": arm_sketch(tried, linkage, setup.area, setup.objects, setup.table),
+                "sketch": _sketch(tried, linkage, setup),
             }
         )
         if len(others) == OTHERS:
             break
     return others
+
+
+def _sketch(tried: Attempt, linkage: Linkage, setup: Setup) -> Markup:
+    return arm_sketch(
+        tried,
+        linkage,
+        setup.area,
+        setup.objects,
+        setup.table,
+        obstacles=setup.obstacles,
+        tool=setup.robot.tool,
+    )
 
 
 def _worst_first(event: RoundFinished) -> list[int]:

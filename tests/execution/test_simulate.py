@@ -11,7 +11,16 @@ from pydrake.systems.primitives import ConstantValueSource
 
 from drake_screw.execution import Phase, ScrewPlanExecutor, TimedPlan, build_station, simulate
 from drake_screw.planning.approach import approached
-from drake_screw.robot import ObjectConfig, TableConfig
+from drake_screw.robot import (
+    BoxShape,
+    CylinderShape,
+    ObjectConfig,
+    ObstacleConfig,
+    PlacedShape,
+    SphereShape,
+    TableConfig,
+    ToolConfig,
+)
 from drake_screw.screws import pose, translation_distance
 from tests.execution.conftest import START, timed_plan
 
@@ -89,6 +98,34 @@ def test_an_obstacle_in_the_way_blocks_the_arm(robot, arm, timed) -> None:
     assert any("post" in contact.bodies for contact in report.contacts)
     assert not report.flawless
     assert done.t[-1] < timed.duration + 0.5
+
+
+def test_the_tool_is_blocked_by_an_obstacle(robot, arm, timed) -> None:
+    """A stick in the hand comes upon a post that the hand itself would not reach."""
+    way = arm.pose(timed.segments[0].q[[0, -1]])
+    toward = way[1, :3, 3] - way[0, :3, 3]
+    ahead = way[1, :3, 3] + 0.2 * toward / np.linalg.norm(toward)
+    post = ObstacleConfig("pole", PlacedShape(CylinderShape(0.03, 1.0), tuple(ahead)))
+    p_EP = (np.linalg.inv(way[1]) @ [*ahead, 1.0])[:3]
+    tip = PlacedShape(SphereShape(0.02), tuple(0.8 * p_EP))
+    for tool in (None, ToolConfig("left_hand", tip)):
+        station = build_station(replace(robot, tool=tool), obstacles=[post])
+        report = simulate(station, timed, np.empty((0, 4, 4))).report
+        if tool is None:
+            assert report.flawless
+    assert not report.flawless
+    assert {contact.bodies for contact in report.contacts} == {("tool", "pole")}
+
+
+def test_a_tool_may_touch_what_it_is_allowed_to(robot, timed) -> None:
+    box = ToolConfig("left_hand", PlacedShape(BoxShape((0.1, 0.1, 0.3)), (0.0, 0.0, -0.12)))
+    found = []
+    for touches in ((), ("left_upper_forearm", "left_lower_forearm")):
+        held = replace(robot, tool=replace(box, touches=touches))
+        station = build_station(held, table=TABLE, objects=[BOWL])
+        found.append(simulate(station, timed, FAR[None]).report)
+    assert any("tool" in contact.bodies for contact in found[0].contacts)
+    assert found[1].flawless
 
 
 @pytest.mark.parametrize("kind", ["empty", "limits", "start"])

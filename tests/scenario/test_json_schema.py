@@ -55,6 +55,8 @@ def test_shipped_scenarios_name_it_and_obey_it(name: str) -> None:
         {"coverage": {"options": None, "epsilon": 0.01}},
         {"table": None, "recorded_on": None, "segmentation": {}},
         {"demonstrations": {"initial": ["one", "two"]}},
+        {"obstacles": [{"name": "wall", "box": [1, 0.1, 1], "xyz": [3, 0, 0]}]},
+        {"obstacles": [{"name": "jug", "mesh": "jug.obj", "scale": 0.001}]},
         {"coverage": {"strategy": "my.module:Mine", "options": {"n": 1, "fast": True}}},
         {"teacher": {"kind": "my.module:Mine", "patience": 3}},
         {"teacher": {"kind": "simulated", "motion": "my.module:nudging"}},
@@ -79,6 +81,8 @@ def test_what_the_loader_accepts_is_accepted(tmp_path: Path, values: dict[str, A
         ({"teacher": {"kind": "simulated", "motoin": "pouring"}}, "teacher"),
         ({"planner": {"collision": "no"}}, "planner.collision"),
         ({"regions": {"grid": {"x": 0}}}, "regions.grid"),
+        ({"obstacles": [{"name": "wall", "box": [1, 1]}]}, "obstacles.0.box"),
+        ({"obstacles": [{"name": "wall", "ball": 1}]}, "obstacles.0"),
     ],
 )
 def test_what_the_loader_refuses_is_refused(

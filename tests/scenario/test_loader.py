@@ -764,3 +764,46 @@ def test_objects_of_the_task_are_objects_of_the_scenario() -> None:
     assert named.demonstrations.objects == ("bowl",)
     with pytest.raises(ScenarioError, match=r"objects\.0: there is no object 'bowel'"):
         load_scenario("pouring", ["demonstrations.objects=[bowel]"])
+
+
+@pytest.mark.parametrize("name", ["pouring", "scooping"])
+def test_shipped_scenarios_show_obstacles_and_a_tool_that_can_be_read(
+    name: str, tmp_path: Path
+) -> None:
+    lines = load_scenario(name).source.read_text().splitlines()
+    for first in ("  # tool:", "# obstacles:"):
+        i = next(i for i, line in enumerate(lines) if line.startswith(first))
+        while lines[i].lstrip().startswith("#"):
+            lines[i] = lines[i].replace("# ", "", 1)
+            i += 1
+    file = tmp_path / "shown.yaml"
+    file.write_text("\n".join(lines))
+    scenario = load_scenario(file)
+    assert scenario.robot.tool.shape.cylinder is not None
+    assert scenario.obstacles[0].box == (0.04, 0.6, 0.3)
+    assert scenario.obstacles[-1].name == ("jug" if name == "pouring" else "wall")
+
+
+def test_meshes_are_seen_from_the_file_and_survive_its_being_stored(
+    write: Callable[..., Path], tmp_path: Path
+) -> None:
+    file = write(
+        ("start: [0.1, -0.2]", "start: [0.1, -0.2]\n  tool: {shape: {mesh: spoon.obj}}"),
+        ("regions:", "obstacles:\n  - {name: jug, mesh: ../jug.obj, scale: 0.001}\nregions:"),
+    )
+    scenario = load_scenario(file)
+    assert scenario.obstacles[0].mesh == tmp_path.parent / "jug.obj"
+    assert scenario.robot.tool.shape.mesh == tmp_path / "spoon.obj"
+    stored = tmp_path / "run" / "scenario.yaml"
+    stored.parent.mkdir()
+    stored.write_text(dump_scenario(scenario))
+    assert load_stored_scenario(stored) == scenario
+    assert "scale: 1.0" not in stored.read_text()
+
+
+def test_a_scenario_stored_before_there_were_obstacles_has_none(
+    write: Callable[..., Path],
+) -> None:
+    scenario = load_stored_scenario(write())
+    assert scenario.obstacles == ()
+    assert scenario.robot.tool is None

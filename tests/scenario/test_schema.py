@@ -60,7 +60,7 @@ def find_problems(data: Data) -> tuple[Problem, ...]:
 
 def test_every_key_is_described_and_every_block_frozen() -> None:
     found = list(blocks(Scenario))
-    assert len(set(found)) == 14
+    assert len(set(found)) == 18
     for block in found:
         for name, field in block.model_fields.items():
             assert field.description, f"{block.__name__}.{name}"
@@ -113,6 +113,17 @@ def adaptive(**values: Any) -> Data:
     return changed(regions={"adaptive": values})
 
 
+def obstacle(**values: Any) -> Data:
+    return changed(obstacles=({"name": "wall", **values},))
+
+
+def tool(**values: Any) -> Data:
+    return with_block("robot", tool=values)
+
+
+BOX = {"box": (0.1, 0.2, 0.3)}
+
+
 def recorded_on(**values: Any) -> Data:
     block = RecordedOnBlock(model="arm", joints=("c", "d"), end_effector="hand")
     return changed(recorded_on={**block.model_dump(), **values})
@@ -155,6 +166,32 @@ def test_another_robot_may_have_made_the_recordings() -> None:
             "another object named 'bowl'",
             "",
         ),
+        (
+            obstacle(),
+            "obstacles.0",
+            "expected one shape, found none",
+            "box, cylinder, sphere, mesh",
+        ),
+        (obstacle(**BOX, sphere={"radius": 1.0}), "obstacles.0", "found box and sphere", ""),
+        (obstacle(box=(0.1, -0.2, 0.3)), "obstacles.0.box.1", "above 0, found -0.2", "full sizes"),
+        (obstacle(box=(0.1, 0.2)), "obstacles.0.box", "expected a list of 3 numbers", ""),
+        (
+            obstacle(cylinder={"radius": 0.0, "length": 1.0}),
+            "obstacles.0.cylinder.radius",
+            "above 0, found 0.0",
+            "",
+        ),
+        (obstacle(**BOX, scale=2.0), "obstacles.0.scale", "a box has no scale", "Leave it out"),
+        (obstacle(**BOX, name="bowl"), "obstacles.0.name", "another thing named 'bowl'", "own"),
+        (
+            changed(obstacles=({"name": "wall", **BOX}, {"name": "wall", **BOX})),
+            "obstacles.1.name",
+            "another thing named 'wall'",
+            "",
+        ),
+        (tool(shape={}), "robot.tool.shape", "expected one shape, found none", ""),
+        (tool(touches=("a",)), "robot.tool.touches", "without a shape", "Give it a shape"),
+        (tool(shape=BOX, touches=("a", "a")), "robot.tool.touches.1", "listed twice", ""),
         (with_object(name="b.x"), "objects.0.name", "letters, digits, - and _", ""),
         (with_object(x=(1.0, 0.5)), "objects.0.x", "lower limit 1.0 lies above", "single"),
         (with_object(x=(-1.7e308, 1.7e308)), "objects.0.x", "too wide", ""),

@@ -12,7 +12,16 @@ import pytest
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import BatchPlanner, Cause
 from drake_screw.planning.outcomes import one_outcome
-from drake_screw.robot import ObjectConfig, Workcell, build_workcell
+from drake_screw.robot import (
+    BoxShape,
+    ObjectConfig,
+    ObstacleConfig,
+    PlacedShape,
+    SphereShape,
+    ToolConfig,
+    Workcell,
+    build_workcell,
+)
 from drake_screw.screws import exp, pose
 from drake_screw.screws.poses import inverse
 from drake_screw.tasks import WorkArea
@@ -164,6 +173,33 @@ def test_charts_are_drawings(limited, workcell, make_round, regions) -> None:
     assert len([e for e in drawn.iter() if e.get("class") == "cell"]) == regions.K
     sketch = arm_sketch(limited, Linkage(workcell), WorkArea((BOWL,)), OBJECTS, TABLE)
     ElementTree.fromstring(f"<div>{sketch}</div>")
+
+
+def test_sketches_show_obstacles_and_the_tool_at_both_ends(limited, workcell) -> None:
+    wall = ObstacleConfig("wall", PlacedShape(BoxShape((0.1, 0.4, 0.5)), (1.0, 0.2, 0.3)))
+    tool = ToolConfig("left_hand", PlacedShape(SphereShape(0.05)), (0.0, 0.0, 0.1))
+    sketch = arm_sketch(
+        limited, Linkage(workcell), WorkArea((BOWL,)), OBJECTS, TABLE, obstacles=[wall], tool=tool
+    )
+    above, side = (
+        [
+            np.array([p.split(",") for p in e.get("points").split()], dtype=float)
+            for e in figure.iter("polygon")
+        ]
+        for figure in ElementTree.fromstring(f"<div>{sketch}</div>")
+    )
+    assert len(above) == len(side) == 3
+    np.testing.assert_allclose(
+        [above[0].min(axis=0), above[0].max(axis=0)], [[-400, -1050], [0, -950]]
+    )
+    np.testing.assert_allclose(
+        [side[0].min(axis=0), side[0].max(axis=0)], [[950, -550], [1050, -50]]
+    )
+    X_WE = workcell.arm.pose(limited.plan.q[[0, -1]])
+    centers = (X_WE @ [0.0, 0.0, 0.1, 1.0])[:, :3]
+    for seen, p in zip(above[1:], centers, strict=True):
+        middle = (seen.min(axis=0) + seen.max(axis=0)) / 2.0
+        np.testing.assert_allclose(middle, [-1e3 * p[1], -1e3 * p[0]], atol=1.5)
 
 
 def test_links_and_joint_frames_are_where_the_plant_has_them(workcell) -> None:

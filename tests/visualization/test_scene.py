@@ -7,9 +7,20 @@ import pytest
 from pydrake.geometry import Meshcat
 
 from drake_screw.errors import ModelError
-from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig
+from drake_screw.robot import (
+    BoxShape,
+    CylinderShape,
+    ObjectConfig,
+    ObstacleConfig,
+    PlacedShape,
+    RobotConfig,
+    TableConfig,
+    ToolConfig,
+    build_workcell,
+)
 from drake_screw.tasks import ObjectArea, WorkArea, grid_regions
 from drake_screw.visualization import Scene
+from drake_screw.visualization.linkage import Linkage
 from tests.visualization.conftest import BOWL
 
 ARM = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
@@ -35,6 +46,20 @@ def test_the_robot_stands_at_its_start(scene, meshcat) -> None:
     Scene(meshcat, bent, TABLE, [ObjectConfig("bowl", 0.08, 0.06)], WorkArea((BOWL,)))
     assert place("left_upper_shoulder") == shoulder
     assert place("left_wrist") != wrist
+
+
+def test_obstacles_and_what_the_hand_holds_are_shown(meshcat) -> None:
+    cup = PlacedShape(CylinderShape(0.03, 0.1))
+    robot = replace(BAXTER, tool=ToolConfig("left_hand", cup))
+    wall = ObstacleConfig("wall", PlacedShape(BoxShape((0.1, 1.0, 0.5)), (1.2, 0.0, 0.3)))
+    Scene(meshcat, robot, TABLE, [], WorkArea((BOWL,)), obstacles=[wall])
+    assert meshcat.HasPath("/workcell/wall")
+    assert meshcat.HasPath("/workcell/baxter/tool")
+    cell = build_workcell(robot, table=TABLE, obstacles=[wall])
+    assert "baxter/tool" in Linkage(cell).names
+    Scene(meshcat, BAXTER, TABLE, [], WorkArea((BOWL,)))
+    assert not meshcat.HasPath("/workcell/wall")
+    assert not meshcat.HasPath("/workcell/baxter/tool")
 
 
 def test_a_model_that_does_not_exist_is_refused(meshcat) -> None:
