@@ -41,6 +41,8 @@ class Certificate:
         freedoms: symmetries that were taken for granted.
         approach: how the arm comes to the first guiding pose: "screw", or "free" for any joint
             motion.
+        led_around: whether an arm was led around what a free approach touches, for which OMPL has
+            to be there; None where that was not asked of it, or is not known.
         kept_position: m, and
         kept_rotation: rad, largest deviation of what was shown near the objects from what the
             demonstrations keep of it; None where it is not known.
@@ -67,6 +69,7 @@ class Certificate:
     delta_of_attempt: float | None = None
     freedoms: tuple[Freedom, ...] = ()
     approach: Literal["screw", "free"] = "screw"
+    led_around: bool | None = None
     kept_position: float | None = None
     kept_rotation: float | None = None
     reason: str = ""
@@ -108,11 +111,20 @@ class Certificate:
             f"This is of {self.regions} regions, with {self.demonstrations} "
             f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
             "in each region. To succeed is to have a plan within the joint limits of the robot's "
-            f"model{collisions}."
-        ) + (
-            " The way to the first guiding pose may be any joint motion."
-            if self.approach == "free"
-            else ""
+            f"model{collisions}.{self._way_there()}"
+        )
+
+    def _way_there(self) -> str:
+        if self.approach != "free":
+            return ""
+        any_motion = " The way to the first guiding pose may be any joint motion"
+        if self.led_around is None:
+            return f"{any_motion}."
+        if self.led_around:
+            return f"{any_motion}; where the straight one touches something, it is led around that."
+        return (
+            f"{any_motion}, but only the straight one was tried: without OMPL, which was not "
+            "installed, the arm is not led around what it touches."
         )
 
     def _fidelity(self) -> tuple[str, ...]:
@@ -142,7 +154,12 @@ class Certificate:
 
 
 def certificate(
-    setup: Setup, finished: Finished, *, attempt: int = 1, instances: int = 0
+    setup: Setup,
+    finished: Finished,
+    *,
+    attempt: int = 1,
+    instances: int = 0,
+    led_around: bool | None = None,
 ) -> Certificate:
     """What a finished run states.
 
@@ -151,6 +168,7 @@ def certificate(
         finished: its last event.
         attempt: 1 + the number of rounds before the last whose verdict was `attempted`.
         instances: drawn in all rounds.
+        led_around: as the certificate has it.
     """
     verdict, goal, bandit = finished.verdict, setup.scenario.coverage, setup.bandit
     shown: dict[str, Any] = {}
@@ -180,6 +198,7 @@ def certificate(
         guarantee=bandit.guarantee,
         freedoms=freedoms(setup.scenario),
         approach=setup.scenario.planner.approach,
+        led_around=led_around,
         kept_position=_largest(finished, "position"),
         kept_rotation=_largest(finished, "rotation"),
         reason=finished.reason,
