@@ -48,13 +48,13 @@ class Law:
         """Length in s."""
         return float(self.t[-1])
 
-    def at(self, t: Array) -> tuple[Array, Array, Array]:
-        """s, its rate in 1/s and the rate's change in 1/s^2 at times t (m,) from 0 to the end."""
+    def at(self, t: Array) -> tuple[Array, Array]:
+        """s, and its rate in 1/s, at times t (m,) from 0 to the end."""
         i = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
         change = (np.diff(self.x) / (2.0 * np.diff(self.s)))[i]
         elapsed, rate = t - self.t[i], np.sqrt(self.x[i])
         s = self.s[i] + elapsed * (rate + 0.5 * change * elapsed)
-        return s, np.maximum(rate + change * elapsed, 0.0), change
+        return s, np.maximum(rate + change * elapsed, 0.0)
 
 
 def fastest(

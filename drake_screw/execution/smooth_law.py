@@ -18,8 +18,8 @@ from scipy.ndimage import maximum_filter1d
 from drake_screw.execution.fastest import Law, fastest
 from drake_screw.typing import Array
 
-FINE = 1e-3  # s, between points at which a law is checked
-EVERY = 4  # of them one is kept
+FINE = 1e-3  # s, between points at which the fastest law is averaged
+EVERY = 4  # of them one is a sample
 GRID = 120
 """Intervals at least, at whose ends the fastest law keeps the limits. The path's own points are
 among them: its second derivative is straight between two."""
@@ -73,9 +73,9 @@ def smooth_law(path: CubicSpline, velocity: Array, acceleration: Array, window: 
         if slower < ENOUGH:
             break
         # The average at a time is of the law in the window before it.
-        size = 1 + _steps(window)
+        size = 2 + _steps(window) // EVERY
         about = maximum_filter1d(excess, size, origin=-(size // 2), mode="nearest")
-        about = np.interp(law.t[1:-1], FINE * np.arange(len(about)), about)
+        about = np.interp(law.t[1:-1], samples.period * np.arange(len(about)), about)
         slowed = law.x[1:-1] / np.maximum(about, 1.0) ** 2
         most[1:-1] = np.minimum(most[1:-1], np.where(about > 1.0, slowed, np.inf))
     return min(found, key=lambda samples: samples.duration)
@@ -105,7 +105,7 @@ def _grid(s: Array) -> Array:
 def _smoothed(
     law: Law, path: CubicSpline, velocity: Array, acceleration: Array, window: float
 ) -> tuple[Samples, Array]:
-    """A law averaged over a window, and how much too fast it is (m,), FINE apart; 1 is the limit.
+    """A law averaged over a window, and how much too fast it is at samples (m,); 1 is the limit.
 
     The average of shifted copies of a law has the average of their derivatives.
     """
@@ -113,21 +113,16 @@ def _smoothed(
     last = EVERY * int(np.ceil((np.ceil(law.duration / FINE) + width) / EVERY))
     t = FINE * np.arange(last + 1)
     moving = t <= law.duration
-    s, rate, change = law.at(np.minimum(t, law.duration))
+    s, rate = law.at(np.minimum(t, law.duration))
     box = np.full(width, 1.0 / width)
-    s, rate, change = (
-        np.convolve(values, box)[: last + 1] for values in (s, rate * moving, change * moving)
-    )
+    s, rate = (np.convolve(values, box)[: last + 1 : EVERY] for values in (s, rate * moving))
     s = np.clip(s, 0.0, 1.0)
-    slope = path(s, 1)
-    v = slope * rate[:, None]
-    a = path(s, 2) * rate[:, None] ** 2 + slope * change[:, None]
-    kept = slice(None, None, EVERY)
-    samples = Samples(EVERY * FINE, s[kept], rate[kept], path(s[kept]), v[kept])
-    played = np.max(_accelerations(samples) / acceleration, axis=-1)
-    used = np.max(np.abs(a) / acceleration, axis=1)
-    used[1:] = np.maximum(used[1:], np.repeat(played, EVERY))
-    return samples, np.maximum(np.max(np.abs(v) / velocity, axis=1), np.sqrt(used))
+    samples = Samples(EVERY * FINE, s, rate, path(s), path(s, 1) * rate[:, None])
+    excess = np.max(np.abs(samples.v) / velocity, axis=1)
+    played = np.sqrt(np.max(_accelerations(samples) / acceleration, axis=1))
+    excess[:-1] = np.maximum(excess[:-1], played)
+    excess[1:] = np.maximum(excess[1:], played)
+    return samples, excess
 
 
 def _steps(window: float) -> int:
