@@ -91,6 +91,7 @@ def main() -> None:
     if not plan.success:
         raise SystemExit("the demonstration does not solve its own instance")
     poses = np.concatenate([arm.pose(plan.q[:1]), guides])
+    time_plan(plan, poses, arm, TimeLimits())
     timing, timed = seconds(lambda: time_plan(plan, poses, arm, TimeLimits()))
     spent = 1e3 * control_periods(arm, timed)
     result: dict[str, Any] = {
@@ -107,7 +108,7 @@ def main() -> None:
     period = result["control_period_ms"]
     print(f"a plan of {len(timed.segments)} segments, {timed.duration:.1f} s")
     print(f"plan with its path         {planning:8.4f} s")
-    print(f"time law                   {timing:8.2f} s")
+    print(f"time law                   {timing:8.4f} s")
     print(
         f"control period             {period['mean']:8.3f} ms computing, median "
         f"{period['median']:.3f}, 99 % below {period['p99']:.3f}"

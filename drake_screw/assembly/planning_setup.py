@@ -7,7 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from drake_screw.assembly.sanity import check_reach, check_start, check_start_is_free
+from drake_screw.assembly.sanity import (
+    check_reach,
+    check_start,
+    check_start_is_free,
+    kept_within,
+)
 from drake_screw.assembly.symmetries import symmetries
 from drake_screw.assembly.workcell_parts import (
     object_configs,
@@ -109,7 +114,8 @@ class PlanningSetup:
     @cached_property
     def batch_planner(self) -> BatchPlanner:
         """The planner that watches joint limits and reach."""
-        chain, block = self.workcell.arm.screw_chain(), self.scenario.planner
+        block = self.scenario.planner
+        chain = kept_within(self.scenario, self.workcell.arm)
         return BatchPlanner(
             chain,
             tolerance=block.tolerance,
@@ -130,4 +136,6 @@ class PlanningSetup:
     @cached_property
     def careful_planner(self) -> CollisionFreePlanner:
         """Plans what is to be executed, whether or not the scenario looks at collisions."""
-        return CollisionFreePlanner(self.batch_planner, self.workcell)
+        return CollisionFreePlanner(
+            self.batch_planner, self.workcell, self.scenario.planner.clearance
+        )

@@ -159,7 +159,7 @@ def preview(scenario: Scenario) -> Preview:
     setup = Setup(scenario)
     arm, goal, tree, block = setup.workcell.arm, setup.goal, setup.tree, scenario.teacher
     asking, recordings = scenario.demonstrations, teacher_recordings(setup)
-    chain, recorder, planner = arm.screw_chain(), setup.recorder, scenario.planner
+    chain, recorder = arm.screw_chain(), setup.recorder
     other = None
     if recorder.model_file is not None:
         reach = recorder.arm.screw_chain().reach
@@ -197,7 +197,7 @@ def preview(scenario: Scenario) -> Preview:
         first=asking.first if asking.initial and isinstance(asking.initial, int) else None,
         budget=asking.budget,
         farthest_corner=_farthest_corner(setup),
-        lacks_ompl=planner.approach == "free" and planner.collision and not connection.available(),
+        lacks_ompl=setup.leads_around is False,
         samples=_samples(setup),
         plans_per_second=_plans_per_second(setup),
     )

@@ -33,7 +33,7 @@ from drake_screw.errors import ModelError, RecordingError
 from drake_screw.planning import Planner
 from drake_screw.plugins import find
 from drake_screw.robot import Arm, RobotConfig
-from drake_screw.robot.workcell import add_robot
+from drake_screw.robot.parts import add_robot
 from drake_screw.scenario.workcell_blocks import RecordedOnBlock
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from drake_screw.errors import ScenarioError
-from drake_screw.robot import Arm, Workcell
+from drake_screw.robot import Arm, ScrewChain, Workcell
 from drake_screw.scenario.schema import Scenario
 from drake_screw.screws import pose
 from drake_screw.tasks import WorkArea
@@ -45,27 +45,49 @@ def check_start(scenario: Scenario, arm: Arm) -> None:
     Raises:
         ScenarioError: it is not.
     """
-    start = np.array(scenario.robot.start, dtype=float)
-    margin = arm.margin(start)
+    start, chain = np.array(scenario.robot.start, dtype=float), kept_within(scenario, arm)
+    margin = np.minimum(start - chain.lower, chain.upper - start)
     if (margin <= 0.0).any():
         i = int(np.argmin(margin))
+        kept = scenario.planner.joint_margin
+        within = f", a planner.joint_margin of {kept:g} kept" if kept > 0.0 else ""
         raise ScenarioError(
             f"robot.start: {arm.joint_names[i]} starts at {start[i]:.4f} rad, outside "
-            f"its limits {arm.lower[i]:.4f} .. {arm.upper[i]:.4f}",
+            f"its limits {chain.lower[i]:.4f} .. {chain.upper[i]:.4f}{within}",
             remedy="Start from a configuration that is strictly inside all joint limits.",
             file=scenario.source,
         )
 
 
+def kept_within(scenario: Scenario, arm: Arm) -> ScrewChain:
+    """The arm as it is planned for: within its joint limits, less the margin to be kept.
+
+    Raises:
+        ScenarioError: no motion is left to a joint.
+    """
+    chain, margin = arm.screw_chain(), scenario.planner.joint_margin
+    lower, upper = chain.lower + margin, chain.upper - margin
+    if (lower >= upper).any():
+        i = int(np.argmin(upper - lower))
+        raise ScenarioError(
+            f"planner.joint_margin: {margin:g} to either side leave nothing of the range of "
+            f"{arm.joint_names[i]}, {arm.lower[i]:.4f} .. {arm.upper[i]:.4f}",
+            remedy="Choose a smaller margin.",
+            file=scenario.source,
+        )
+    return replace(chain, lower=lower, upper=upper) if margin > 0.0 else chain
+
+
 def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     """Check that no obstacle touches the robot at the start, nor anything what the robot holds.
 
-    Objects are left out: where they stand is not known yet.
+    Where collisions are looked at, neither may the robot touch itself or the table there, since no
+    plan could succeed. Objects are left out: where they stand is not known yet.
 
     Raises:
         ScenarioError: something does.
     """
-    if not workcell.obstacles and workcell.tool is None:
+    if not (workcell.obstacles or workcell.tool or scenario.planner.collision):
         return
     away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, FAR]
     pairs = workcell.colliding_bodies(workcell.start, pose(np.eye(3), away))
@@ -90,6 +112,14 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
                 f"'{scenario.robot.base}'), or change robot.start.",
                 file=scenario.source,
             )
+    if pairs and scenario.planner.collision:
+        both = " and ".join(f"'{a}' touches '{b}'" for a, b in pairs)
+        raise ScenarioError(
+            f"robot.start: {both} at the start, so that no plan can succeed",
+            remedy="Change robot.start, or mend the collision shapes of the robot's model; "
+            "planner.collision: false leaves collisions out.",
+            file=scenario.source,
+        )
 
 
 def _listed(names: list[str]) -> str:

@@ -19,7 +19,7 @@ from drake_screw.assembly.ranked_plans import RankedPlan, best_plan
 from drake_screw.assembly.recorder import Learning, Recorder
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
-from drake_screw.planning import Cause, Outcomes, Plan, Planner
+from drake_screw.planning import Cause, Outcomes, Plan, Planner, connection
 from drake_screw.plugins import find
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import free_axes
@@ -101,6 +101,16 @@ class Setup(PlanningSetup):
             planner = self.batch_planner.plan
         plan: Plan = planner(demonstration, X_WO, self.workcell.start, int(outcome.variant))
         return plan
+
+    @property
+    def leads_around(self) -> bool | None:
+        """Whether `planner` leads the arm around what a free approach touches: OMPL is installed.
+
+        None where the scenario does not ask for that, or the planner was passed in.
+        """
+        block = self.scenario.planner
+        asked = block.approach == "free" and block.collision and "planner" not in self.passed_in
+        return connection.available() if asked else None
 
     @cached_property
     def goal(self) -> Goal:

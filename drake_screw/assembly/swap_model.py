@@ -9,7 +9,7 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from drake_screw.errors import ModelError
 from drake_screw.robot import RobotConfig
-from drake_screw.robot.workcell import add_robot
+from drake_screw.robot.parts import add_robot
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
 

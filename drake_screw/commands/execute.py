@@ -21,7 +21,9 @@ EXAMPLE = "drake-screw execute runs/pouring/TIME --per-region 1"
 
 def execute(
     run: RunArgument,
-    per_region: Annotated[int, typer.Option(help="Instances to draw in every region.", min=1)] = 2,
+    per_region: Annotated[
+        int | None, typer.Option(help="Instances to draw in every region. Default: 2.", min=1)
+    ] = None,
     instance: Annotated[
         list[str] | None, instance_option("Just one, with the objects there.")
     ] = None,
@@ -42,6 +44,11 @@ def execute(
             "--graphviz executes nothing, so there is no result for --json",
             remedy="Give one of them.",
         )
+    if instance and per_region is not None:
+        raise DrakeScrewError(
+            "--instance names the one to execute, and --per-region draws others",
+            remedy="Leave out --per-region to execute that one, or --instance to have some drawn.",
+        )
     output = Output(json)
     place = parse_instance(instance) if instance else None
     from drake_screw.runs import executions
@@ -49,4 +56,5 @@ def execute(
     if graphviz:
         print(executions.station_graphviz(run))
         return
-    output.present(executions.execute(run, per_region=per_region, instance=place, workers=workers))
+    count = 2 if per_region is None else per_region
+    output.present(executions.execute(run, per_region=count, instance=place, workers=workers))

@@ -35,8 +35,8 @@ from pydrake.systems.primitives import (
 from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.robot.tool import let_touch
-from drake_screw.robot.workcell import add_robot, add_surroundings
 from drake_screw.typing import Array
 
 Follower = ScrewPlanExecutor | JointPathSource

@@ -1,9 +1,7 @@
 """When a plan is where: each screw segment gets a time law within joint limits.
 
-The joint path turns a corner at each guiding pose, so each segment runs from rest to rest. Toppra
-(Pham and Pham, IEEE Transactions on Robotics, 2018) gives its fastest law; a moving average over
-`smoothing` seconds then makes the acceleration continuous. Toppra keeps the limits only at its grid
-points: the smoothed law is checked between them and slowed down where it exceeds a limit.
+The joint path turns a corner at each guiding pose, so each segment runs from rest to rest, by its
+own `smooth_law`.
 """
 
 from __future__ import annotations
@@ -11,15 +9,12 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydrake.multibody.optimization import Toppra
-from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import RevoluteJoint, SpatialInertia
-from pydrake.trajectories import PiecewisePolynomial
 
+from drake_screw.execution.smooth_law import smooth_law, spline
 from drake_screw.planning import Plan
 from drake_screw.robot import Arm
 from drake_screw.screws import inverse, log
@@ -29,12 +24,6 @@ from drake_screw.typing import Array
 UNLIMITED = 1e3
 """rad/s (or m/s), put in place of an infinite velocity limit."""
 
-FINE = 1e-3  # s, between points at which a time law is checked
-EVERY = 4  # of them one is kept
-GRIDS = (120, 127, 139, 151, 163)
-"""Points along a segment at which Toppra keeps the limits. Now and then its arithmetic fails at one
-of them, on a path that has a time law: then the next number is tried."""
-RESERVE = 0.99  # part of the limits that Toppra may use
 STILL = 1e-6  # rad, joint motion of a segment that does not move
 
 
@@ -78,6 +67,15 @@ class TimedSegment:
     def duration(self) -> float:
         """Length in s."""
         return self.period * (len(self.s) - 1)
+
+    def at(self, t: Array) -> tuple[Array, Array, Array, Array]:
+        """s and rate (...), q and v (..., n) at times t (...) from 0 to the duration."""
+        part = t / self.period
+        k = np.minimum(part.astype(np.int64), len(self.s) - 2)
+        u = part - k
+        s, rate = _hermite(u, self.period, self.s, self.rate, k)
+        q, v = _hermite(u[..., None], self.period, self.q, self.v, k)
+        return s, rate, q, v
 
     @cached_property
     def twist(self) -> Array:
@@ -146,11 +144,7 @@ class TimedPlan:
             if left <= piece.duration or i + 1 == len(self.segments):
                 break
             left -= piece.duration
-        left = min(left, piece.duration)
-        k = min(int(left / piece.period), len(piece.s) - 2)
-        u = left / piece.period - k
-        s, rate = _hermite(u, piece.period, piece.s, piece.rate, k)
-        q, v = _hermite(u, piece.period, piece.q, piece.v, k)
+        s, rate, q, v = piece.at(np.array(min(left, piece.duration)))
         return SetPoint(i, float(s), float(rate), q, v)
 
     def sampled(self, period: float) -> tuple[Array, Array, Array]:
@@ -160,8 +154,14 @@ class TimedPlan:
         """
         whole = np.arange(0.0, self.duration - 1e-9, period)
         t = np.append(whole, self.duration)
-        points = [self.at(float(time)) for time in t]
-        return t, np.stack([p.q for p in points]), np.stack([p.v for p in points])
+        begins = np.cumsum([0.0, *(piece.duration for piece in self.segments)])
+        number = np.clip(np.searchsorted(begins, t) - 1, 0, len(self.segments) - 1)
+        parts = [
+            piece.at(np.clip(t[number == i] - begins[i], 0.0, piece.duration))
+            for i, piece in enumerate(self.segments)
+        ]
+        q, v = (np.concatenate([part[k] for part in parts]) for k in (2, 3))
+        return t, q, v
 
 
 def time_plan(
@@ -201,88 +201,12 @@ def _timed(
         return TimedSegment(X_WA, X_WB, limits.smoothing, ends, 0.0 * ends, q[[0, -1]], still)
     velocity = limits.speed * np.minimum(arm.velocity_limits, UNLIMITED)
     acceleration = np.full(arm.n, limits.acceleration)
-    path = _spline(s, q)
-    slope, bend = path.derivative(1), path.derivative(2)
-    law = _fastest(path, RESERVE * velocity, RESERVE * acceleration)
-    s, rate, change = _smoothed(law, limits.smoothing)
-    along = _values(slope, s)
-    v = along * rate
-    a = _values(bend, s) * rate**2 + along * change
-    excess = np.max(np.abs(v) / velocity[:, None])
-    excess = max(1.0, excess, np.sqrt(np.max(np.abs(a) / acceleration[:, None])))
-    kept = slice(None, None, EVERY)
-    period = excess * EVERY * FINE
-    q = _values(path, s[kept]).T
-    return TimedSegment(X_WA, X_WB, period, s[kept], rate[kept] / excess, q, v.T[kept] / excess)
+    law = smooth_law(spline(s, q), velocity, acceleration, limits.smoothing)
+    return TimedSegment(X_WA, X_WB, law.period, law.s, law.rate, law.q, law.v)
 
 
-def _smoothed(law: PiecewisePolynomial, window: float) -> tuple[Array, Array, Array]:
-    """A time law averaged over a window: s, its rate and the rate's change (m,), FINE apart.
-
-    The average of shifted copies of a law has the average of their derivatives.
-    """
-    width = max(1, round(window / FINE))
-    last = int(np.ceil(law.end_time() / FINE)) + width
-    last = EVERY * int(np.ceil(last / EVERY))
-    t = FINE * np.arange(last + 1)
-    within = np.minimum(t, law.end_time())
-    moving = t <= law.end_time()
-    box = np.full(width, 1.0 / width)
-    s, rate, change = (
-        np.convolve(values, box)[: last + 1]
-        for values in (
-            _values(law, within)[0],
-            _values(law.derivative(1), within)[0] * moving,
-            _values(law.derivative(2), within)[0] * moving,
-        )
-    )
-    return np.clip(s, 0.0, 1.0), rate, change
-
-
-def _spline(s: Array, q: Array) -> PiecewisePolynomial:
-    """A twice differentiable path through points; those nearly in one place count once."""
-    kept = np.concatenate([[True], (np.diff(s) > 1e-6) & (s[1:] < 1.0 - 1e-6)])
-    s, q = np.append(s[kept], 1.0), np.concatenate([q[kept], q[-1:]])
-    if len(s) < 5:
-        even = np.linspace(0.0, 1.0, 5)
-        s, q = even, np.stack([np.interp(even, s, angle) for angle in q.T], axis=-1)
-    return PiecewisePolynomial.CubicWithContinuousSecondDerivatives(s, q.T)
-
-
-def _fastest(
-    path: PiecewisePolynomial, velocity: Array, acceleration: Array
-) -> PiecewisePolynomial:
-    for count in GRIDS:
-        toppra = Toppra(path, _joints(len(velocity)), np.linspace(0.0, 1.0, count))
-        toppra.AddJointVelocityLimit(-velocity, velocity)
-        toppra.AddJointAccelerationLimit(-acceleration, acceleration)
-        law = toppra.SolvePathParameterization()
-        if law is not None:
-            return law
-    raise RuntimeError("Toppra found no time law for a path that starts and ends at rest")
-
-
-@lru_cache
-def _joints(n: int) -> MultibodyPlant:
-    """A plant of n joints, of which Toppra asks only how many there are."""
-    plant = MultibodyPlant(0.0)
-    body = plant.world_body()
-    for i in range(n):
-        link = plant.AddRigidBody(f"link{i}", SpatialInertia.Zero())
-        joint = RevoluteJoint(f"joint{i}", body.body_frame(), link.body_frame(), [0.0, 0.0, 1.0])
-        plant.AddJoint(joint)
-        body = link
-    plant.Finalize()
-    return plant
-
-
-def _values(trajectory: PiecewisePolynomial, t: Array) -> Array:
-    """(rows, m) values at times t (m,)."""
-    return np.asarray(trajectory.vector_values(t))
-
-
-def _hermite(u: float, h: float, x: Array, slope: Array, k: int) -> tuple[Array, Array]:
-    """Value and derivative of the cubic through two samples with their slopes, at u in [0, 1]."""
+def _hermite(u: Array, h: float, x: Array, slope: Array, k: Array) -> tuple[Array, Array]:
+    """Value and derivative of the cubic from sample k to the next, at u in [0, 1] of the way."""
     rise = x[k + 1] - x[k]
     left, right = h * slope[k], h * slope[k + 1]
     b, c = 3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise

@@ -8,12 +8,13 @@ space, which keeps joint limits wherever its ends do.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.stats import qmc
 
-from drake_screw.planning.outcomes import Plan
+from drake_screw.planning.outcomes import Outcomes, Plan
 from drake_screw.planning.paths import SPACING
 from drake_screw.robot import ScrewChain
 from drake_screw.typing import Array
@@ -47,6 +48,16 @@ def approached(plan: Plan, q_start: Array) -> Plan:
         segment=np.concatenate([segment, plan.segment[last + 1 :]]),
         s=np.concatenate([s, plan.s[last + 1 :]]),
         approach=True,
+    )
+
+
+def stuck(
+    q_start: Array, outcomes: Outcomes, guides: Sequence[Array], angles: Array
+) -> tuple[Plan, ...]:
+    """Plans that stay where they start, q_start (n,): of outcomes (N,) of a start that fails."""
+    stay = np.zeros(1, dtype=np.int64), np.zeros(1)
+    return tuple(
+        Plan(q_start[None], *stay, outcomes[i], guides[i], angles[i]) for i in range(len(guides))
     )
 
 

@@ -6,23 +6,23 @@ import copy
 import logging
 import os
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
-from drake_screw.planning.approach import approached
+from drake_screw.planning import questions
+from drake_screw.planning.approach import approached, stuck
 from drake_screw.planning.columns import Columns, furthest
 from drake_screw.planning.compiled import Answers, Kernel, Order, Settings
 from drake_screw.planning.contract import Redundancy
 from drake_screw.planning.outcomes import Outcomes, Plan, concatenate
 from drake_screw.planning.paths import joint_paths
 from drake_screw.planning.plan_checker import check_of
-from drake_screw.planning.questions import check_choice, check_question, failed_start
 from drake_screw.planning.swept import SweptChecker
 from drake_screw.planning.symmetry import Symmetries
 from drake_screw.robot import ScrewChain
-from drake_screw.screws import translation_distance
 from drake_screw.typing import Array
 
 EVALUATIONS_PER_STEP = 6
@@ -103,7 +103,7 @@ class BatchPlanner:
                 no guiding poses, or names an object that X_WO lacks.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
-        check_question(self.chain, demonstrations, X_WO, q_start)
+        questions.check_question(self.chain, demonstrations, X_WO, q_start)
         outcomes = self._each_alone(demonstrations, X_WO, q_start, range(1))
         if not self.others:
             return outcomes
@@ -124,18 +124,14 @@ class BatchPlanner:
         so on; a demonstration that is left over before its last variant is NOT_TRIED, too.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
-        check_question(self.chain, demonstrations, X_WO, q_start)
-        there = [d.X_WO for d in demonstrations]
+        questions.check_question(self.chain, demonstrations, X_WO, q_start)
+        order = partial(questions.nearest_first, demonstrations)
 
-        def nearest_first(X_WO: Array) -> Array:
-            away = [translation_distance(X_WO, X).sum(axis=-1) for X in there]
-            return np.argsort(np.stack(away, axis=-1), axis=-1, kind="stable")
-
-        outcomes = self._plan(demonstrations, X_WO, q_start, nearest_first, None, range(1))
+        outcomes = self._plan(demonstrations, X_WO, q_start, order, None, range(1))
         left = np.flatnonzero(~outcomes.any_success)
         if not self.others or len(left) == 0:
             return outcomes
-        again = self._plan(demonstrations, X_WO[left], q_start, nearest_first, None, self.others)
+        again = self._plan(demonstrations, X_WO[left], q_start, order, None, self.others)
         return outcomes.replaced(left, furthest(outcomes[left], again))
 
     def variant_outcomes(
@@ -152,10 +148,10 @@ class BatchPlanner:
         without `others` only of those that come from the arm's own start.
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
-        check_question(self.chain, [demonstration], X_WO, q_start)
+        questions.check_question(self.chain, [demonstration], X_WO, q_start)
         starts = range(1 + len(self.others)) if others else range(1)
         columns = self._columns([demonstration], X_WO, starts)
-        failed = failed_start(self.chain, q_start, (len(X_WO), len(columns.X_OE)))
+        failed = questions.failed_start(self.chain, q_start, (len(X_WO), len(columns.X_OE)))
         if failed is not None:
             return failed
         answers = self._answers(columns, X_WO, q_start, None, 1)
@@ -190,20 +186,16 @@ class BatchPlanner:
         """
         X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
         which = np.asarray(which, dtype=np.int64)
-        check_question(self.chain, demonstrations, X_WO, q_start)
-        N = len(X_WO)
-        variant = np.broadcast_to(np.asarray(variant, dtype=np.int64), (N,))
+        questions.check_question(self.chain, demonstrations, X_WO, q_start)
+        variant = np.broadcast_to(np.asarray(variant, dtype=np.int64), (N := len(X_WO),))
         columns = self._columns(demonstrations, X_WO, range(1 + len(self.others)))
-        check_choice(which, variant, N, columns.counts)
+        questions.check_choice(which, variant, N, columns.counts)
         if N == 0:
             return ()
         guides, angles = columns.followed(X_WO, which, variant)
-        failed = failed_start(self.chain, q_start, (N,))
+        failed = questions.failed_start(self.chain, q_start, (N,))
         if failed is not None:
-            stay = np.zeros(1, dtype=np.int64), np.zeros(1)
-            return tuple(
-                Plan(q_start[None], *stay, failed[i], guides[i], angles[i]) for i in range(N)
-            )
+            return stuck(q_start, failed, guides, angles)
         self._warn_of_compiling(N)
         column = columns.first[which] + variant
         traced = self._kernel.trace(
@@ -231,13 +223,9 @@ class BatchPlanner:
         )
 
     def plan(
-        self,
-        demonstration: Demonstration,
-        X_WO: ArrayLike,
-        q_start: ArrayLike,
-        variant: int = 0,
+        self, demonstration: Demonstration, X_WO: ArrayLike, q_start: ArrayLike, variant: int = 0
     ) -> Plan:
-        """The plan of one instance X_WO (k, 4, 4) with a demonstration's variant; see `plans`."""
+        """The plan of one instance X_WO (k, 4, 4); see `plans`."""
         return self.plans([demonstration], np.asarray(X_WO)[None], q_start, [0], variant)[0]
 
     def _starts(self, q_start: Array) -> Array:
@@ -275,7 +263,7 @@ class BatchPlanner:
             order: of the demonstrations.
             starts: configurations to try.
         """
-        failed = failed_start(self.chain, q_start, (len(X_WO), len(demonstrations)))
+        failed = questions.failed_start(self.chain, q_start, (len(X_WO), len(demonstrations)))
         if failed is not None:
             return failed
         columns = self._columns(demonstrations, X_WO, starts)
@@ -301,7 +289,7 @@ class BatchPlanner:
             run=run,
             begins=columns.begins,
             place=columns.poses,
-            check=self.checker and check_of(self.checker, columns.begins, q_start),
+            check=check_of(self.checker, columns.begins, q_start),
             threads=self.threads,
         )
         self.evaluations += EVALUATIONS_PER_STEP * sum(int(a.steps.sum()) for a in answers)

@@ -164,4 +164,3 @@ class CollisionFreePlanner:
             if led_around(self.checker, plans[i], X_WO[i]) is not None:
                 return one_outcome(Cause.SUCCESS, variant=int(variants[i]))
         return None
-

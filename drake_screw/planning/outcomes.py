@@ -45,7 +45,7 @@ class Outcomes:
     joint: NDArray[np.int8]
     fraction: NDArray[np.float32]
     variant: NDArray[np.int16]
-    pair: NDArray[np.int16] = field(default=None)  # type: ignore[assignment]
+    pair: NDArray[np.int16] = field(default=None)  # type: ignore[arg-type]
 
     def __post_init__(self) -> None:
         """Without pairs, none is known."""

@@ -90,6 +90,7 @@ class PlanChecker:
         if not touched.touches[0]:
             return None
         found, pair = self.first_collisions([plan], X_WO[None]), int(touched.pair[0])
+        bodies: tuple[tuple[str, str], ...] = ()
         if pair >= 0:
             bodies = (self.workcell.touching(pair),)
         else:
@@ -111,15 +112,20 @@ class PlanChecker:
         return self.swept.along(np.concatenate(steps), first, X_WO)
 
 
-def check_of(checker: SweptChecker, begins: NDArray[np.int64], q_start: Array) -> Check:
+def check_of(
+    checker: SweptChecker | None, begins: NDArray[np.int64], q_start: Array
+) -> Check | None:
     """A checker of plans for the kernel.
 
     Args:
-        checker: of the workcell.
+        checker: of the workcell; None for none.
         begins: (C,) the configuration that each column begins at; 0 for the arm's start, from which
             the others' first guiding poses are approached along a straight line in joint space.
         q_start: (n,) rad or m, the arm's start.
     """
+
+    if checker is None:
+        return None
 
     def check(X_WO: Array, trace: Trace) -> Touches:
         instance, column = trace.plan.T

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning.outcomes import Cause, Outcomes
 from drake_screw.robot import ScrewChain
+from drake_screw.screws import translation_distance
 from drake_screw.typing import Array
 
 
@@ -63,6 +64,12 @@ def check_choice(
         raise ValueError(f"which must be {N} indices from 0 to {D - 1}, it is {which}")
     if ((variant < 0) | (variant >= counts[which])).any():
         raise ValueError(f"variant must be one of those that there are, it is {variant}")
+
+
+def nearest_first(demonstrations: Sequence[Demonstration], X_WO: Array) -> NDArray[np.int64]:
+    """(N, D) demonstrations by how far their objects stood from X_WO (N, k, 4, 4), summed up."""
+    away = [translation_distance(X_WO, d.X_WO).sum(axis=-1) for d in demonstrations]
+    return np.argsort(np.stack(away, axis=-1), axis=-1, kind="stable")
 
 
 def failed_start(chain: ScrewChain, q_start: Array, shape: tuple[int, ...]) -> Outcomes | None:

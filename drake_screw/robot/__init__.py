@@ -2,6 +2,7 @@
 
 from drake_screw.robot.arm import Arm
 from drake_screw.robot.obstacles import ObstacleConfig
+from drake_screw.robot.parts import ObjectConfig, RobotConfig, TableConfig
 from drake_screw.robot.screw_chain import ScrewChain
 from drake_screw.robot.shapes import (
     BoxShape,
@@ -11,13 +12,7 @@ from drake_screw.robot.shapes import (
     SphereShape,
 )
 from drake_screw.robot.tool import ToolConfig
-from drake_screw.robot.workcell import (
-    ObjectConfig,
-    RobotConfig,
-    TableConfig,
-    Workcell,
-    build_workcell,
-)
+from drake_screw.robot.workcell import Workcell, build_workcell
 
 __all__ = [
     "Arm",

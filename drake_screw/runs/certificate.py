@@ -27,6 +27,8 @@ class Certificate:
         regions: how many there were in the end.
         beta, epsilon, delta: what was to be certified, see `drake_screw.bandits.Goal`.
         collisions_checked: whether touching something counts as failing.
+        clearance: m, that the robot keeps from all else and itself, where that is checked.
+        joint_margin: rad (or m), that joints keep from their limits.
         strategy: name of the bandit.
         guarantee: what it can be relied on for, in one sentence.
         claim: what is shown; of the weakest region where not certified.
@@ -41,6 +43,8 @@ class Certificate:
         freedoms: symmetries that were taken for granted.
         approach: how the arm comes to the first guiding pose: "screw", or "free" for any joint
             motion.
+        led_around: whether an arm was led around what a free approach touches, for which OMPL has
+            to be there; None where that was not asked of it, or is not known.
         kept_position: m, and
         kept_rotation: rad, largest deviation of what was shown near the objects from what the
             demonstrations keep of it; None where it is not known.
@@ -65,8 +69,11 @@ class Certificate:
     delta_spent_over_attempts: bool | None = None
     attempt: int | None = None
     delta_of_attempt: float | None = None
+    clearance: float = 0.0
+    joint_margin: float = 0.0
     freedoms: tuple[Freedom, ...] = ()
     approach: Literal["screw", "free"] = "screw"
+    led_around: bool | None = None
     kept_position: float | None = None
     kept_rotation: float | None = None
     reason: str = ""
@@ -102,17 +109,35 @@ class Certificate:
         return (*shown, self._scope(), *freedoms, *self._fidelity(), self._evidence())
 
     def _scope(self) -> str:
-        touching = " that touches nothing"
-        collisions = touching if self.collisions_checked else "; collisions do not count"
+        if not self.collisions_checked:
+            collisions = "; collisions do not count"
+        elif self.clearance > 0.0:
+            collisions = (
+                f" along which the robot keeps {self.clearance:g} m from all else and itself"
+            )
+        else:
+            collisions = " that touches nothing"
+        within = "within"
+        if self.joint_margin > 0.0:
+            within = f"at least {self.joint_margin:g} rad (m, where they slide) within"
         return (
             f"This is of {self.regions} regions, with {self.demonstrations} "
             f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
-            "in each region. To succeed is to have a plan within the joint limits of the robot's "
-            f"model{collisions}."
-        ) + (
-            " The way to the first guiding pose may be any joint motion."
-            if self.approach == "free"
-            else ""
+            f"in each region. To succeed is to have a plan {within} the joint limits of the "
+            f"robot's model{collisions}.{self._way_there()}"
+        )
+
+    def _way_there(self) -> str:
+        if self.approach != "free":
+            return ""
+        any_motion = " The way to the first guiding pose may be any joint motion"
+        if self.led_around is None:
+            return f"{any_motion}."
+        if self.led_around:
+            return f"{any_motion}; where the straight one touches something, it is led around that."
+        return (
+            f"{any_motion}, but only the straight one was tried: without OMPL, which was not "
+            "installed, the arm is not led around what it touches."
         )
 
     def _fidelity(self) -> tuple[str, ...]:
@@ -142,7 +167,12 @@ class Certificate:
 
 
 def certificate(
-    setup: Setup, finished: Finished, *, attempt: int = 1, instances: int = 0
+    setup: Setup,
+    finished: Finished,
+    *,
+    attempt: int = 1,
+    instances: int = 0,
+    led_around: bool | None = None,
 ) -> Certificate:
     """What a finished run states.
 
@@ -151,6 +181,7 @@ def certificate(
         finished: its last event.
         attempt: 1 + the number of rounds before the last whose verdict was `attempted`.
         instances: drawn in all rounds.
+        led_around: as the certificate has it.
     """
     verdict, goal, bandit = finished.verdict, setup.scenario.coverage, setup.bandit
     shown: dict[str, Any] = {}
@@ -176,10 +207,13 @@ def certificate(
         epsilon=goal.epsilon,
         delta=goal.delta,
         collisions_checked=setup.scenario.planner.collision,
+        clearance=setup.scenario.planner.clearance,
+        joint_margin=setup.scenario.planner.joint_margin,
         strategy=bandit.name,
         guarantee=bandit.guarantee,
         freedoms=freedoms(setup.scenario),
         approach=setup.scenario.planner.approach,
+        led_around=led_around,
         kept_position=_largest(finished, "position"),
         kept_rotation=_largest(finished, "rotation"),
         reason=finished.reason,

@@ -19,9 +19,9 @@ from drake_screw.typing import Array
 def read_instances(file: Path, area: WorkArea) -> Array:
     """Read task instances from a CSV with a header.
 
-    Columns are x, y (m) and, if wanted, yaw (rad) of the only object, or bowl.x and so on where
-    there are several; a yaw may go without a column where the work area fixes it. Other columns
-    are passed over.
+    Columns are x, y (m) and yaw (rad) of the only object, or bowl.x and so on where there are
+    several. What the work area fixes may go without a column, and is then as it says; what varies
+    may not. Other columns are passed over.
 
     Returns:
         x_y_yaw: (N, k, 3).
@@ -42,12 +42,12 @@ def read_instances(file: Path, area: WorkArea) -> Array:
     columns: dict[int, tuple[int, int]] = {}
     for i, item in enumerate(area.objects):
         for j, axis in enumerate(AXES):
-            name = axis if len(area.objects) == 1 else f"{item.name}.{axis}"
+            name = column_name(area, i, axis)
             if name in header:
                 columns[header.index(name)] = (i, j)
-            elif axis != "yaw" or item.name in area.turning:
+            elif item.lower[j] < item.upper[j]:
                 raise ScenarioError(
-                    f"no column '{name}'" + (", and it varies" if axis == "yaw" else ""),
+                    f"no column '{name}', and it varies",
                     remedy=suggestion(name, header, "Columns found"),
                     file=file,
                     line=1,
@@ -73,6 +73,27 @@ def read_instances(file: Path, area: WorkArea) -> Array:
     return x_y_yaw[kept]
 
 
+def unlike_fixed(x_y_yaw: Array, area: WorkArea) -> dict[str, int]:
+    """How many of the instances (N, k, 3) have another number where the work area fixes one.
+
+    Returns:
+        By the column's name, where there are any: they lie outside the work area.
+    """
+    found = {}
+    for i, item in enumerate(area.objects):
+        for j, axis in enumerate(AXES):
+            if item.lower[j] == item.upper[j]:
+                count = int((np.abs(x_y_yaw[:, i, j] - item.lower[j]) > 1e-9).sum())
+                if count:
+                    found[column_name(area, i, axis)] = count
+    return found
+
+
+def column_name(area: WorkArea, i: int, axis: str) -> str:
+    """The column of an axis of object i: named after the object where there are several."""
+    return axis if len(area.objects) == 1 else f"{area.objects[i].name}.{axis}"
+
+
 def outcomes_csv(
     x_y_yaw: Array,
     outcomes: Outcomes,
@@ -92,12 +113,12 @@ def outcomes_csv(
         turns: further columns (N,) of angles in rad, by their names: how bodies are turned.
     """
     header, cells = [], []
-    for i, item in enumerate(area.objects):
+    for i in range(len(area.objects)):
         for j, axis in enumerate(AXES):
             values = x_y_yaw[:, i, j]
             if axis == "yaw" and np.all(values == values[0]):
                 continue
-            header.append(axis if len(area.objects) == 1 else f"{item.name}.{axis}")
+            header.append(column_name(area, i, axis))
             cells.append([f"{v:.9g}" for v in values.tolist()])
     cells += outcomes.codes().T.tolist()
     turns = turns or {}

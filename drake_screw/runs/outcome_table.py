@@ -14,7 +14,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
 from drake_screw.planning import Outcomes
 from drake_screw.planning.symmetry import TOOL
-from drake_screw.runs.instance_tables import outcomes_csv, read_instances
+from drake_screw.runs.instance_tables import outcomes_csv, read_instances, unlike_fixed
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import Array, PathLike
 
@@ -27,6 +27,8 @@ class OutcomeTable:
         output: the table.
         instances: how many were planned.
         outside: how many of them lie outside the work area.
+        unlike_fixed: how many of these have another number where the scenario fixes one, by the
+            column's name.
         success_rates: share of the instances that each demonstration solves, by its name.
         solved: share that at least one of them solves.
         seconds: that planning took.
@@ -35,6 +37,7 @@ class OutcomeTable:
     output: Path
     instances: int
     outside: int
+    unlike_fixed: dict[str, int]
     success_rates: dict[str, float]
     solved: float
     seconds: float
@@ -44,6 +47,10 @@ class OutcomeTable:
         lines = [f"{count} in {self.seconds:.1f} s"]
         if self.outside:
             lines.append(f"note: {self.outside:,} instances lie outside the work area")
+        lines += (
+            f"note: the scenario fixes {name}, and {count:,} instances have another one"
+            for name, count in self.unlike_fixed.items()
+        )
         lines += (f"  {name}: {rate:.1%}" for name, rate in self.success_rates.items())
         lines += [f"solved by at least one: {self.solved:.2%}", f"written to {self.output}"]
         return "\n".join(lines)
@@ -79,6 +86,7 @@ def tabulate_outcomes(
         output=output,
         instances=len(x_y_yaw),
         outside=int((~setup.area.contains(x_y_yaw)).sum()),
+        unlike_fixed=unlike_fixed(x_y_yaw, setup.area),
         success_rates={d.name: rate for d, rate in zip(learned, rates, strict=True)},
         solved=float(outcomes.any_success.mean()),
         seconds=seconds,

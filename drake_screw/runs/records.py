@@ -198,6 +198,7 @@ class RunRecord:
     delta: float
     regions: int | Literal["adaptive"]
     passed_in: tuple[str, ...] = ()
+    led_around: bool | None = None
     model: str
     hashes: dict[str, str]
     versions: dict[str, str]

@@ -22,6 +22,12 @@ from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.files import file_hash
+from drake_screw.runs.begun_with import (
+    check_models,
+    check_parts,
+    check_ways_around,
+    model_files,
+)
 from drake_screw.runs.certificate import Certificate, certificate
 from drake_screw.runs.codec import FORMAT
 from drake_screw.runs.directory import SCENARIO, RunDirectory, now, versions
@@ -110,9 +116,11 @@ class Run:
 
         Raises:
             RunDirectoryError: the run was begun with parts that were passed in from Python, and
-                that it lacks now.
+                that it lacks now; or OMPL, which decides on plans, was there and is not, or the
+                other way round.
         """
-        self._check_parts()
+        check_parts(self.setup, self.directory)
+        check_ways_around(self.setup, self.directory)
 
         def progress(event: RegionsEvaluated) -> None:
             for listener in listeners:
@@ -147,17 +155,6 @@ class Run:
             )
         yield from self.reader.events()
 
-    def _check_parts(self) -> None:
-        missing = set(self.directory.record.passed_in) - set(self.setup.passed_in)
-        if missing:
-            parts = ", ".join(f"{name}=..." for name in sorted(missing))
-            raise RunDirectoryError(
-                f"this run was begun in Python with its own {' and '.join(sorted(missing))}",
-                remedy=f"Carry it on from there: open_run(path, {parts}). Parts that the scenario "
-                "names are found again by themselves.",
-                file=self.directory.path,
-            )
-
     def _record(self, event: Event) -> None:
         self.directory.log(describe(event, self.setup.regions))
         if isinstance(event, RoundFinished):
@@ -174,6 +171,7 @@ class Run:
                     event,
                     attempt=1 + sum(entry.verdict.attempted for entry in rounds[:-1]),
                     instances=sum(sum(entry.samples) for entry in rounds),
+                    led_around=self.directory.record.led_around,
                 ),
                 finished=now(),
             )
@@ -222,8 +220,9 @@ def new_run(scenario: Scenario, output: PathLike | None = None, **parts: Unpack[
         delta=goal.delta,
         regions=setup.regions.K if setup.tree is None else "adaptive",
         passed_in=setup.passed_in,
+        led_around=setup.leads_around,
         model=str(setup.workcell.model_file),
-        hashes={name: file_hash(file) for name, file in _files(setup).items()},
+        hashes={name: file_hash(file) for name, file in model_files(setup).items()},
         versions=versions(),
         started=now(),
         finished=None,
@@ -257,22 +256,8 @@ def open_run(path: PathLike, **parts: Unpack[Parts]) -> Run:
             file=path / SCENARIO,
             line=error.line,
         ) from error
-    for name, file in _files(setup).items():
-        if file_hash(file) != directory.record.hashes.get(name):
-            what = "mesh" if name in setup.meshes else "robot model"
-            raise RunDirectoryError(
-                f"the {what} {file} has changed since this run",
-                remedy="Put the file back as it was, or run the scenario again.",
-                file=path,
-            )
+    check_models(setup, directory)
     return Run(setup, directory)
-
-
-def _files(setup: Setup) -> dict[str, Path]:
-    """The models and meshes that a run depends on."""
-    other = setup.recorder.model_file
-    models = {"model": setup.workcell.model_file}
-    return models | ({} if other is None else {"recorded_on": other}) | setup.meshes
 
 
 def resumable(run: Run) -> Run:

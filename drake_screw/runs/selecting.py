@@ -82,6 +82,7 @@ def select(
         ),
         attempt=trials.attempt_of_last,
         instances=sum(attempt.instances for attempt in trials.attempts),
+        led_around=setup.leads_around,
     )
     return Selection(
         scenario=scenario.name,

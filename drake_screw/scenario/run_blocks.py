@@ -12,6 +12,7 @@ from pydantic_core import InitErrorDetails
 from drake_screw.plugins import BUILT_IN, is_plugged_in
 from drake_screw.scenario.block import Block, Problem
 from drake_screw.scenario.values import (
+    METRES,
     RADIANS,
     Folder,
     OneOf,
@@ -180,5 +181,18 @@ class PlannerBlock(Block):
     redundancy: Literal["least_norm", "away_from_limits"] = "least_norm"
     """what more joints than six do with the motion that the end effector leaves free: as little as
     can be, as published, or away from the joint limits"""
-    collision: bool = False
-    """whether a plan that touches the robot itself, the table or an object fails"""
+    collision: bool = True
+    """whether a plan fails along which the robot, or what it holds, touches itself, the table, an
+    obstacle or an object; as published they are not looked at"""
+    clearance: Annotated[Annotated[float, Field(ge=0.0, le=1.0)], METRES] = 0.0
+    """distance that all those have to keep, where `collision` is looked at"""
+    joint_margin: Annotated[Annotated[float, Field(ge=0.0, lt=3.0)], RADIANS] = 0.0
+    """distance that the joints have to keep from their limits (of prismatic ones in m)"""
+
+    def broken_rules(self) -> Iterator[Problem]:
+        if self.clearance > 0.0 and not self.collision:
+            yield Problem(
+                ("clearance",),
+                "a distance to keep, but collisions are not looked at",
+                "Write collision: true, or leave the clearance out.",
+            )

@@ -22,7 +22,7 @@ from pydrake.planning import RobotDiagramBuilder
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
-from drake_screw.robot.workcell import add_robot, add_surroundings
+from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.tasks import Regions, WorkArea
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes

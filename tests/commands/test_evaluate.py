@@ -29,6 +29,27 @@ def test_evaluate_writes_a_code_for_each_instance_and_demonstration(
     assert "3 instances x 3 demonstrations" in out
 
 
+def test_what_the_scenario_fixes_needs_no_column(command, library, tmp_path) -> None:
+    pouring = ("evaluate", "pouring", "--demonstrations", library)
+    fixed = (*pouring, "--set", "objects.0.y=0.1", "--set", "regions.grid={x: 4}")
+    (tmp_path / "x.csv").write_text("x\n0.8\n0.9\n")
+    (tmp_path / "x_y.csv").write_text("x,y\n0.8,0.1\n0.9,0.3\n")
+    code, out, _ = command(*fixed, "--instances", "x.csv", "--output", "out.csv")
+    assert code == 0
+    assert "note" not in out
+    assert [row.split(",")[:2] for row in Path("out.csv").read_text().splitlines()[1:]] == [
+        ["0.8", "0.1"],
+        ["0.9", "0.1"],
+    ]
+    code, out, _ = command(*fixed, "--instances", "x_y.csv", "--output", "out.csv")
+    assert code == 0
+    assert "note: the scenario fixes y, and 1 instances have another one" in out
+    code, out, err = command(*pouring, "--instances", "x.csv", "--output", "other.csv")
+    assert (code, out) == (2, "")
+    assert "no column 'y', and it varies" in err
+    assert not Path("other.csv").exists()
+
+
 def test_another_model_needs_only_the_arm(command, library, places, shared) -> None:
     calibrated = shared / "reference" / "baxter_left_calibrated.sdf"
     code, _, err = command(

@@ -100,6 +100,10 @@ EVALUATE = ["evaluate", "pouring", "--demonstrations", "nowhere"]
         (["inspect", "places.csv"], "not a run directory"),
         (["execute", "."], "not a run directory"),
         (["execute", ".", "--per-region", "0"], "per-region"),
+        (
+            ["execute", ".", "--per-region", "2", "--instance", "0.9", "0.3"],
+            "Leave out --per-region to execute that one, or --instance",
+        ),
         (["execute", ".", "--graphviz", "--json", "x.json"], "--graphviz executes nothing"),
         (["export", "nowhere", "--instance", "0.9", "0.3", "--output", "x"], "not a run directory"),
         (["export", "nowhere", "--instance", "0.9", "--output", "x"], "Give OBJECT=X,Y"),

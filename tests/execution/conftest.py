@@ -12,7 +12,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from drake_screw.execution import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Plan, ReferencePlanner
 from drake_screw.robot import Arm, RobotConfig
-from drake_screw.robot.workcell import add_robot
+from drake_screw.robot.parts import add_robot
 from drake_screw.screws import exp, pose
 
 START = (1.0434904, -0.2201262, -0.7470486, 1.5243934, 1.8818109, -0.9687089, -0.4908739)

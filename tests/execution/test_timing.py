@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drake_screw.execution import TimedPlan, TimeLimits, timing
+from drake_screw.execution import TimedPlan, TimeLimits
 from drake_screw.execution.timing import TimedSegment, time_plan
 from drake_screw.planning import Plan, ReferencePlanner
 from drake_screw.planning.outcomes import Cause, one_outcome
+from drake_screw.planning.rounding import rounded
 from drake_screw.screws import exp, rotation_angle, sclerp, translation_distance
 
 
@@ -37,7 +38,7 @@ def test_limits_hold_between_grid_points(arm, time_it, limits) -> None:
         timed, limits.speed * arm.velocity_limits, limits.acceleration, every=4e-4
     )
     assert velocity <= 1.0 + 1e-3
-    assert acceleration <= 1.0 + 2e-2
+    assert acceleration <= 1.0 + 1e-3
     assert max(velocity, acceleration) > 0.8
 
 
@@ -52,7 +53,7 @@ def test_random_plans_keep_the_limits(arm, seed) -> None:
     assert plan.success
     timed = time_plan(plan, np.stack([X_WS, X_WG]), arm)
     ratios = largest_ratios(timed, 0.5 * arm.velocity_limits, 2.0, every=4e-4)
-    assert max(ratios) <= 1.0 + 2e-2
+    assert max(ratios) <= 1.0 + 1e-3
 
 
 def test_each_segment_runs_from_rest_to_rest_in_order(timed) -> None:
@@ -155,20 +156,28 @@ def test_a_plan_is_its_own_copy_and_an_empty_one_is_empty(timed) -> None:
     assert replace(timed, segments=timed.segments[:1]).duration < timed.duration
 
 
-def test_where_toppras_arithmetic_fails_other_grid_points_are_taken(
-    time_it, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    expected, tried = time_it(TimeLimits()), []
+def test_samples_are_the_set_points(timed) -> None:
+    t, q, v = timed.sampled(0.013)
+    points = [timed.at(time) for time in t]
+    np.testing.assert_allclose(q, [p.q for p in points], atol=1e-12)
+    np.testing.assert_allclose(v, [p.v for p in points], atol=1e-9)
 
-    class Fragile(timing.Toppra):
-        def __init__(self, path: object, plant: object, gridpoints: np.ndarray) -> None:
-            super().__init__(path, plant, gridpoints)
-            tried.append(len(gridpoints))
 
-        def SolvePathParameterization(self) -> object:
-            return None if tried[-1] == timing.GRIDS[0] else super().SolvePathParameterization()
+def test_the_more_tightly_corners_are_followed_the_law_is_no_slower_for_it(arm) -> None:
+    """The grid has the path's own points, so that limits are kept at tight corners, too.
 
-    monkeypatch.setattr(timing, "Toppra", Fragile)
-    found = time_it(TimeLimits())
-    assert tried == list(timing.GRIDS[:2]) * len(expected.segments)
-    assert found.duration == pytest.approx(expected.duration, rel=1e-2)
+    Where they are kept at a few places only, the law is slowed down as a whole for what it exceeds
+    in between: by a factor of seven, on the tightest of these.
+    """
+    around = np.random.default_rng(1).uniform(-0.5, 0.5, (5, arm.n))
+    corners = (arm.lower + arm.upper) / 2.0 + around
+    durations = []
+    for q in rounded(corners):
+        s, segment = np.linspace(0.0, 1.0, len(q)), np.zeros(len(q), dtype=int)
+        X = arm.pose(q[[0, -1]])
+        found = Plan(q, segment, s, one_outcome(Cause.SUCCESS), X[1:])
+        timed = time_plan(found, X, arm)
+        ratios = largest_ratios(timed, 0.5 * arm.velocity_limits, 2.0, every=4e-4)
+        assert max(ratios) <= 1.0 + 1e-3
+        durations.append(timed.duration)
+    assert max(durations) < 1.25 * min(durations)

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from drake_screw.execution.timing import _spline
+from drake_screw.execution.smooth_law import spline
 from drake_screw.planning.paths import SPACING
 from drake_screw.planning.rounding import BETWEEN, GAPS, rounded
 
@@ -42,8 +42,8 @@ def test_curves_come_nearer_and_nearer_to_the_path(corners) -> None:
 def test_a_spline_through_the_samples_stays_on_the_checked_lines(corners) -> None:
     """A time law moves along the spline; the lines between samples are what is checked."""
     for q, gap in zip(rounded(corners), GAPS, strict=True):
-        path = _spline(np.linspace(0.0, 1.0, len(q)), q)
-        fine = path.vector_values(np.linspace(0.0, 1.0, 20 * len(q))).T
+        path = spline(np.linspace(0.0, 1.0, len(q)), q)
+        fine = path(np.linspace(0.0, 1.0, 20 * len(q)))
         assert distance(fine, q).max() <= gap / 64.0
 
 
@@ -51,6 +51,6 @@ def test_the_spline_is_the_curve_itself() -> None:
     """Sampled twice as finely, a curve is the same."""
     q = next(iter(rounded(ZIGZAG)))
     s = np.linspace(0.0, 1.0, len(q))
-    whole, half = _spline(s, q), _spline(s[::2], q[::2])
+    whole, half = spline(s, q), spline(s[::2], q[::2])
     fine = np.linspace(0.0, 1.0, 1000)
-    np.testing.assert_allclose(whole.vector_values(fine), half.vector_values(fine), atol=1e-9)
+    np.testing.assert_allclose(whole(fine), half(fine), atol=1e-9)

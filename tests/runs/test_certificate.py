@@ -28,7 +28,7 @@ def scenario_of(collision=False, objects=(), tool=None, approach="screw"):
     )
 
 
-def stated_by(name, mu, rounds=(), scenario=None, **options):
+def stated_by(name, mu, rounds=(), scenario=None, led_around=None, **options):
     """Certificate of a run of three regions whose last round met failure probabilities mu."""
     bandit = make_strategy(name, GOAL, **options)
     attempt = 1 + sum(entry.attempted for entry in rounds)
@@ -48,7 +48,9 @@ def stated_by(name, mu, rounds=(), scenario=None, **options):
     ]
     demonstrations = tuple(SimpleNamespace(fidelity=(each,)) for each in kept)
     finished = Finished(status, "the budget is used up", verdict, demonstrations)
-    stated = certificate(setup, finished, attempt=attempt, instances=instances)
+    stated = certificate(
+        setup, finished, attempt=attempt, instances=instances, led_around=led_around
+    )
     assert json.loads(json.dumps(plain(stated))) == plain(stated)
     return stated, verdict, " ".join(stated.statement)
 
@@ -106,6 +108,23 @@ def test_it_says_what_was_taken_for_granted() -> None:
     record = plain(stated)
     assert record["freedoms"][0] == {"body": "bowl", "axis": "z", "turns": "any", "tried": 24}
     assert record["approach"] == "free"
+
+
+@pytest.mark.parametrize(
+    ("led_around", "said"),
+    [
+        (True, "any joint motion; where the straight one touches something, it is led around that"),
+        (False, "any joint motion, but only the straight one was tried: without OMPL"),
+        (None, "may be any joint motion. "),
+    ],
+)
+def test_whether_the_arm_is_led_around_what_it_touches_is_said(led_around, said) -> None:
+    scenario = scenario_of(collision=True, approach="free")
+    stated, _, text = stated_by(
+        "eprocess", [0.0, 0.0, 0.0], scenario=scenario, led_around=led_around
+    )
+    assert said in text
+    assert plain(stated).get("led_around") is led_around
 
 
 def test_the_papers_reading_is_labelled() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from drake_screw.errors import ScenarioError
 from drake_screw.planning import Cause, Outcomes
-from drake_screw.runs.instance_tables import outcomes_csv, read_instances
+from drake_screw.runs.instance_tables import outcomes_csv, read_instances, unlike_fixed
 from drake_screw.tasks import ObjectArea, WorkArea
 
 BOWL = ObjectArea("bowl", (0.5, -0.5, 0.25), (1.0, 0.5, 0.25), -0.06)
@@ -32,6 +32,31 @@ def test_several_objects_have_their_own_columns(tmp_path) -> None:
     file = write(tmp_path, "bowl.x,bowl.y,cup.x,cup.y,cup.yaw\n0.6,0.1,0.8,-0.1,0.5\n")
     expected = [[[0.6, 0.1, 0.25], [0.8, -0.1, 0.5]]]
     assert np.array_equal(read_instances(file, TWO), expected)
+
+
+def test_what_is_fixed_needs_no_column(tmp_path) -> None:
+    rail = ObjectArea("bowl", (0.5, 0.1, 0.25), (1.0, 0.1, 0.25), 0.0)
+    file = write(tmp_path, "x\n0.6\n0.7\n")
+    assert np.array_equal(
+        read_instances(file, WorkArea((rail,))), [[[0.6, 0.1, 0.25]], [[0.7, 0.1, 0.25]]]
+    )
+    stand = ObjectArea("stand", (0.4, -0.3, 0.5), (0.4, -0.3, 0.5), 0.0)
+    file = write(tmp_path, "bowl.x,bowl.y\n0.6,0.1\n")
+    expected = [[[0.6, 0.1, 0.25], [0.4, -0.3, 0.5]]]
+    assert np.array_equal(read_instances(file, WorkArea((BOWL, stand))), expected)
+    with pytest.raises(ScenarioError, match=r"no column 'bowl\.y', and it varies"):
+        read_instances(write(tmp_path, "bowl.x,stand.x\n0.6,0.4\n"), WorkArea((BOWL, stand)))
+
+
+def test_what_is_fixed_and_given_otherwise_is_counted(tmp_path) -> None:
+    stand = ObjectArea("stand", (0.4, -0.3, 0.5), (0.4, -0.3, 0.5), 0.0)
+    area = WorkArea((BOWL, stand))
+    file = write(tmp_path, "bowl.x,bowl.y,stand.x,stand.y\n0.6,0.1,0.4,-0.3\n9,0.1,0.5,-0.3\n")
+    x_y_yaw = read_instances(file, area)
+    assert x_y_yaw[1, 1].tolist() == [0.5, -0.3, 0.5]
+    assert unlike_fixed(x_y_yaw, area) == {"stand.x": 1}
+    turned = read_instances(write(tmp_path, "x,y,yaw\n0.6,0.1,0.25\n0.6,0.1,1\n"), ONE)
+    assert unlike_fixed(turned, ONE) == {"yaw": 1}
 
 
 @pytest.mark.parametrize(

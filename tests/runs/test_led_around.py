@@ -11,9 +11,10 @@ import pytest
 
 from drake_screw.assembly.preview import preview
 from drake_screw.assembly.setup import Setup
+from drake_screw.errors import RunDirectoryError
 from drake_screw.planning import Cause, connection
 from drake_screw.runs.executions import execute
-from drake_screw.runs.run import Run, new_run
+from drake_screw.runs.run import Run, new_run, open_run
 from drake_screw.runs.trajectory import write_trajectory
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.scenario.schema import Scenario
@@ -130,3 +131,63 @@ def test_check_says_what_ompl_would_be_good_for(
         update={"planner": scenario.planner.model_copy(update={"approach": "screw"})}
     )
     assert not preview(screws).lacks_ompl
+
+
+def test_whether_the_arm_is_led_around_is_a_matter_of_a_free_approach_that_may_touch(
+    scenario: Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def led(there: bool, **changes: object) -> bool | None:
+        monkeypatch.setattr(connection, "available", lambda: there)
+        planner = scenario.planner.model_copy(update=changes)
+        return Setup(scenario.model_copy(update={"planner": planner})).leads_around
+
+    assert led(True) is True
+    assert led(False) is False
+    assert led(True, approach="screw") is None
+    assert led(True, collision=False) is None
+    assert Setup(scenario, planner=lambda _: SimpleNamespace()).leads_around is None
+
+
+@pytest.mark.parametrize(
+    ("before", "said"),
+    [(True, r"begun with OMPL.*not installed now"), (False, r"begun without OMPL.*installed now")],
+)
+def test_a_run_goes_on_only_where_the_arm_is_led_around_as_before(
+    scenario: Scenario, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: bool, said: str
+) -> None:
+    class Leaving:
+        def demonstrate(self, *_: object, **__: object) -> None:
+            raise KeyboardInterrupt
+
+    def carry_on(there: bool) -> None:
+        monkeypatch.setattr(connection, "available", lambda: there)
+        list(open_run(tmp_path / "run", teacher=lambda _: Leaving()).events())
+
+    monkeypatch.setattr(connection, "available", lambda: before)
+    run = new_run(scenario, tmp_path / "run", teacher=lambda _: Leaving())
+    assert run.directory.record.led_around is before
+    with pytest.raises(KeyboardInterrupt):
+        carry_on(before)
+    record = (tmp_path / "run" / "run.json").read_text()
+    with pytest.raises(RunDirectoryError, match=said) as error:
+        carry_on(not before)
+    assert "run the scenario again" in str(error.value.remedy).lower()
+    assert (tmp_path / "run" / "run.json").read_text() == record
+    old = record.replace(f'"led_around": {str(before).lower()}', '"led_around": null')
+    assert old != record
+    (tmp_path / "run" / "run.json").write_text(old)
+    with pytest.raises(KeyboardInterrupt):
+        carry_on(not before)
+
+
+def test_the_certificate_of_a_run_says_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(connection, "available", lambda: False)
+    changes = ["planner.approach=free", "planner.collision=true", "regions.grid={x: 1}"]
+    goal = ["coverage.beta=0.5", "coverage.epsilon=0.2", "demonstrations.budget=1"]
+    run = new_run(load_scenario("pouring", [*changes, *goal]), tmp_path / "run")
+    for _ in run.events():
+        pass
+    stated = open_run(tmp_path / "run").certificate
+    assert stated is not None
+    assert (stated.approach, stated.led_around) == ("free", False)
+    assert "without OMPL" in " ".join(stated.statement)

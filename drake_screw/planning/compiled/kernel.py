@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drake_screw.planning.compiled import arm_module
+from drake_screw.planning.compiled.check import Check
 from drake_screw.planning.compiled.lanes import Answers, Bounds, Places, Problem
 from drake_screw.planning.compiled.link_frames import link_frames
 from drake_screw.planning.compiled.rows import LANES, Rows
@@ -38,26 +39,6 @@ Order = Callable[[Array], NDArray[np.int64]]
 
 Place = Callable[[Array], Array]
 """From object poses (N, k, 4, 4) to the frames (N, m, 4, 4) that guiding poses belong to."""
-
-
-class Touches(NamedTuple):
-    """The first touches of P plans: arrays (P,).
-
-    Attributes:
-        touches: whether a plan does; nothing is said of the others.
-        segment: in which it does, from 0.
-        fraction: how much of that is done by then.
-        pair: of bodies that touch.
-    """
-
-    touches: NDArray[np.bool_]
-    segment: NDArray[np.int64]
-    fraction: Array
-    pair: NDArray[np.int64]
-
-
-Check = Callable[[Array, Trace], Touches]
-"""From object poses (N, k, 4, 4) and plans among them to which of the plans touch something."""
 
 
 def _as_they_are(X_WO: Array) -> Array:
@@ -185,7 +166,7 @@ class Kernel:
     ) -> list[Answers]:
         """Plans for N instances, each with one demonstration, and the steps that were taken.
 
-        A lane's arithmetic does not depend on its neighbours, so that they are also those of `plan`.
+        A lane's arithmetic does not depend on its neighbours: they are also those of `plan`.
 
         Args:
             X_OE, objects, X_WO, q_start, begins, place, threads: as for `plan`.
@@ -243,7 +224,7 @@ class Kernel:
         while True:
             trace = new_trace(self._n, keep, plans=len(units), most=most, times=per_plan)
             self._run(problem, frames, order, units, answers._replace(trace=trace))
-            if trace.count[2] == 0:
+            if trace.used[2] == 0:
                 return trace.done()
             most, per_plan = 4 * most, 4 * per_plan
 

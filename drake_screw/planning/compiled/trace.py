@@ -44,7 +44,7 @@ class Trace(NamedTuple):
         keep: NOTHING, SUCCESSES or ALL.
         lane_segment: (LANES, L) of the steps of the plans at work, as below; lane_s: (LANES, L, 2);
             lane_q: (LANES, L, 5, n).
-        count: (3,) plans and steps that are kept, and plans that found no room.
+        used: (3,) plans and steps that are kept, and plans that found no room.
         plan: (P, 2) the instance and the demonstration of each.
         first: (P + 1,) where the steps of each plan begin.
         segment: (T,) the segment that a step lies in, from 0.
@@ -58,7 +58,7 @@ class Trace(NamedTuple):
     lane_segment: Index
     lane_s: Array
     lane_q: Array
-    count: Index
+    used: Index
     plan: Index
     first: Index
     segment: Index
@@ -68,7 +68,7 @@ class Trace(NamedTuple):
 
     def done(self) -> Trace:
         """The plans that are done, without the room for more."""
-        plans, steps = int(self.count[0]), int(self.count[1])
+        plans, steps = int(self.used[0]), int(self.used[1])
         return self._replace(
             plan=self.plan[:plans],
             first=self.first[: plans + 1],
@@ -166,10 +166,10 @@ def keep_plan(i, steps, instance, demonstration, part, trace):  # type: ignore[n
         steps: that it took.
         part: how much of the last one the plan goes along.
     """
-    plan, first = trace.count[0], trace.count[1]
+    plan, first = trace.used[0], trace.used[1]
     room = trace.lane_segment.shape[1]
     if steps > room or first + steps > len(trace.segment) or plan >= len(trace.plan):
-        trace.count[2] += 1
+        trace.used[2] += 1
         return
     for k in range(steps):
         trace.segment[first + k] = trace.lane_segment[i, k]
@@ -183,5 +183,5 @@ def keep_plan(i, steps, instance, demonstration, part, trace):  # type: ignore[n
         trace.part[first + steps - 1] = part
     trace.plan[plan, 0], trace.plan[plan, 1] = instance, demonstration
     trace.first[plan + 1] = first + steps
-    trace.count[0] += 1
-    trace.count[1] += steps
+    trace.used[0] += 1
+    trace.used[1] += steps

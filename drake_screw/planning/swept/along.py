@@ -14,7 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from drake_screw.planning.swept import cell, convex, motion, separation, simplex, sweep
+from drake_screw.planning.compiled import functions
+from drake_screw.planning.swept import bounds, cell, convex, motion, separation, simplex, sweep
 from drake_screw.planning.swept.cell import QUESTIONS
 from drake_screw.planning.swept.inner import inner
 from drake_screw.planning.swept.sweep import NONE, set_out, stand
@@ -23,7 +24,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 _sweep = sweep.sweep
-_SOURCES = (cell, convex, motion, separation, simplex, sweep)
+_SOURCES = (bounds, cell, convex, functions, motion, separation, simplex, sweep)
 
 
 class Touches(NamedTuple):
@@ -72,8 +73,8 @@ def _begin(cell, room, X_WO, q, i, found):  # type: ignore[no-untyped-def]
 @inner
 def _end(room, i, found):  # type: ignore[no-untyped-def]
     """Hands on what is left open of path i."""
-    found.questions[i] = room.count[0]
-    for k in range(min(room.count[0], QUESTIONS)):
+    found.questions[i] = room.questions[0]
+    for k in range(min(room.questions[0], QUESTIONS)):
         for j in range(room.asked.shape[1]):
             found.asked[i, k, j] = room.asked[k, j]
         found.at[i, k, 0], found.at[i, k, 1] = room.at[k, 0], room.at[k, 1]

@@ -92,7 +92,7 @@ class Room(NamedTuple):
         place: (DEEPEST + 2,) which half of halves.
         W, weights, pa, pb: of `separation`.
         asked: (QUESTIONS, n) rad or m, questions to Drake; at: (QUESTIONS, 2) their step and place
-            in it; count: (1,) of them, those that found no room included.
+            in it; questions: (1,) of them, those that found no room included.
     """
 
     E: Array
@@ -123,7 +123,7 @@ class Room(NamedTuple):
     pb: Array
     asked: Array
     at: Array
-    count: Index
+    questions: Index
 
 
 def room_for(cell: Cell) -> Room:
@@ -159,5 +159,5 @@ def room_for(cell: Cell) -> Room:
         pb=np.zeros(6),
         asked=np.zeros((QUESTIONS, n)),
         at=np.zeros((QUESTIONS, 2)),
-        count=np.zeros(1, dtype=np.int64),
+        questions=np.zeros(1, dtype=np.int64),
     )

@@ -2,133 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
-from pydrake.geometry import (
-    Box,
-    Capsule,
-    Convex as ConvexShape,
-    Cylinder,
-    Ellipsoid,
-    GeometryId,
-    HalfSpace,
-    Mesh,
-    Role,
-    Shape,
-    Sphere,
-)
+from pydrake.geometry import GeometryId, Role
 from pydrake.multibody.tree import BodyIndex, RigidBody
-from scipy.spatial import ConvexHull
 
 from drake_screw.errors import ModelError
-from drake_screw.planning.swept import convex
 from drake_screw.planning.swept.cell import Cell
-from drake_screw.planning.swept.convex import BALL, Convex
+from drake_screw.planning.swept.cores import Core, core_of, together
 from drake_screw.planning.swept.never_meet import never_meet
 from drake_screw.robot import Workcell
 from drake_screw.typing import Array
 
-ENDLESS = 20.0
-"""m, half extent of the box that stands for a half space."""
-
-
 FEW = 4
 """Fixed shapes near one another that are looked at as one, at most."""
-
-
-@dataclass(frozen=True)
-class Core:
-    """A shape as a core that a ball sweeps (see `convex.Convex`), in a frame of its own.
-
-    Attributes:
-        kind: of the core.
-        size, inner: (3,) m, half extents of core and inner core, or the inner hull's scale.
-        round: m, the ball's radius.
-        p: (3,) m, the core's middle in the shape's frame.
-        corners: (c, 3) m, of a hull, about its middle.
-        edges: (e, 2) corners that share an edge.
-    """
-
-    kind: int
-    size: Array
-    inner: Array
-    round: float
-    p: Array
-    corners: Array
-    edges: Array
-
-    @property
-    def box(self) -> Array:
-        """(3,) m, half extents of a box about its middle that holds it."""
-        if self.kind == convex.HULL:
-            return np.abs(self.corners).max(axis=0)
-        return self.size + self.round
-
-    @property
-    def reach(self) -> float:
-        """How far in m its points are from its middle at most."""
-        if self.kind == convex.HULL:
-            return float(np.linalg.norm(self.corners, axis=1).max())
-        if self.kind == convex.CYLINDER:
-            return float(np.hypot(self.size[0], self.size[2]))
-        if self.kind == convex.ELLIPSOID:
-            return float(self.size.max())
-        return float(np.linalg.norm(self.size) + self.round)
-
-
-def core_of(shape: Shape) -> Core | None:
-    """A shape's core; None of a kind that is not known here."""
-    ball = 0.0
-    match shape:
-        case Sphere():
-            kind, size, ball = convex.POINT, np.zeros(3), shape.radius()
-        case Capsule():
-            kind, size = convex.SEGMENT, np.array([0.0, 0.0, shape.length() / 2.0])
-            ball = shape.radius()
-        case Box():
-            kind, size = convex.BOX, np.asarray(shape.size()) / 2.0
-        case HalfSpace():
-            corner = np.full(3, ENDLESS)
-            return _plain(convex.BOX, corner, 0.0, np.array([0.0, 0.0, -ENDLESS]))
-        case Cylinder():
-            kind = convex.CYLINDER
-            size = np.array([shape.radius(), shape.radius(), shape.length() / 2.0])
-        case Ellipsoid():
-            kind, size = convex.ELLIPSOID, np.array([shape.a(), shape.b(), shape.c()])
-        case Mesh() | ConvexShape():
-            return _hull(shape)
-        case _:
-            return None
-    return _plain(kind, size, ball, np.zeros(3))
-
-
-def _plain(kind: int, size: Array, ball: float, p: Array) -> Core:
-    if kind in (convex.POINT, convex.SEGMENT):
-        smaller = size
-    elif kind == convex.ELLIPSOID:
-        smaller = size * max(1.0 - BALL / size.min(), 0.0)
-    else:
-        smaller = np.maximum(size - BALL, 0.0)
-    none = np.zeros((0, 3)), np.zeros((0, 2), dtype=np.int64)
-    return Core(kind, size, smaller, ball, p, *none)
-
-
-def _hull(shape: Mesh | ConvexShape) -> Core:
-    """The convex hull of a mesh, which is what Drake takes it for."""
-    surface = shape.GetConvexHull()
-    points = np.array([surface.vertex(i) for i in range(surface.num_vertices())])
-    hull = ConvexHull(points)
-    corners = points[hull.vertices]
-    number = np.full(len(points), -1)
-    number[hull.vertices] = np.arange(len(hull.vertices))
-    triangles = number[hull.simplices]
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    middle = corners.mean(axis=0)
-    inradius = -(hull.equations[:, :3] @ middle + hull.equations[:, 3]).max()
-    scale = np.full(3, max(1.0 - BALL / inradius, 0.0))
-    return Core(convex.HULL, np.zeros(3), scale, 0.0, middle, corners - middle, edges)
 
 
 def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
@@ -144,7 +31,7 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
     Raises:
         ModelError: a collision shape is of a kind that is not known here.
     """
-    plant, arm, checker = workcell.plant, workcell.arm, workcell.checker
+    plant, arm = workcell.plant, workcell.arm
     inspector = workcell.scene_graph.model_inspector()
     context = plant.CreateDefaultContext()
     plant.SetPositions(context, arm.full_positions(np.zeros(arm.n)))
@@ -201,7 +88,7 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
     cell = Cell(
         np.ascontiguousarray(chain.screws, dtype=float),
         np.stack([chain.lower, chain.upper]).astype(float),
-        _together(cores),
+        together(cores),
         frames,
         joints,
         np.array(objects, dtype=np.int64),
@@ -291,24 +178,3 @@ def clusters(boxes: Array, some: NDArray[np.bool_]) -> NDArray[np.int64]:
         gap = np.argmax(np.diff(middles[own, longest])) + 1
         sets += [own[:gap], own[gap:]]
     return cluster
-
-
-def _together(cores: list[Core]) -> Convex:
-    """Cores as arrays."""
-    first = np.cumsum([0, *(len(core.corners) for core in cores)], dtype=np.int64)
-    corners = np.concatenate([np.zeros((0, 3)), *(core.corners for core in cores)])
-    edges = np.concatenate(
-        [np.zeros((0, 2), dtype=np.int64), *(core.edges + f for core, f in zip(cores, first))]
-    ).astype(np.int64)
-    both = np.unique(np.concatenate([edges, edges[:, ::-1]]), axis=0)
-    beside = np.searchsorted(both[:, 0], np.arange(len(corners) + 1)).astype(np.int64)
-    return Convex(
-        np.array([core.kind for core in cores], dtype=np.int64),
-        np.array([core.size for core in cores], dtype=float).reshape(-1, 3),
-        np.array([core.inner for core in cores], dtype=float).reshape(-1, 3),
-        np.array([core.round for core in cores], dtype=float),
-        first,
-        np.ascontiguousarray(corners, dtype=float),
-        beside,
-        np.ascontiguousarray(both[:, 1]),
-    )

@@ -91,7 +91,7 @@ def _triangle(W, i, j, k, weights):  # type: ignore[no-untyped-def]
 
 @inner
 def _height(W, i, j, k, m):  # type: ignore[no-untyped-def]
-    """How far the origin is from the plane through i, j and k, in m; negative beyond it, seen from m.
+    """How far the origin is from the plane of i, j and k, in m; negative beyond it, seen from m.
 
     Negative in any case where the tetrahedron is flat.
     """

@@ -1,0 +1,75 @@
+"""What a run was begun with, and has to find again when it is carried on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from drake_screw.assembly.setup import Setup
+from drake_screw.errors import RunDirectoryError
+from drake_screw.files import file_hash
+from drake_screw.runs.directory import RunDirectory
+
+
+def model_files(setup: Setup) -> dict[str, Path]:
+    """The models and meshes that a run depends on."""
+    other = setup.recorder.model_file
+    models = {"model": setup.workcell.model_file}
+    return models | ({} if other is None else {"recorded_on": other}) | setup.meshes
+
+
+def check_models(setup: Setup, directory: RunDirectory) -> None:
+    """Refuse models and meshes that are not what they were.
+
+    Raises:
+        RunDirectoryError: one has changed.
+    """
+    for name, file in model_files(setup).items():
+        if file_hash(file) != directory.record.hashes.get(name):
+            what = "mesh" if name in setup.meshes else "robot model"
+            raise RunDirectoryError(
+                f"the {what} {file} has changed since this run",
+                remedy="Put the file back as it was, or run the scenario again.",
+                file=directory.path,
+            )
+
+
+def check_parts(setup: Setup, directory: RunDirectory) -> None:
+    """Refuse to go on without the parts that were passed in.
+
+    Raises:
+        RunDirectoryError: one is missing.
+    """
+    missing = set(directory.record.passed_in) - set(setup.passed_in)
+    if missing:
+        parts = ", ".join(f"{name}=..." for name in sorted(missing))
+        raise RunDirectoryError(
+            f"this run was begun in Python with its own {' and '.join(sorted(missing))}",
+            remedy=f"Carry it on from there: open_run(path, {parts}). Parts that the scenario "
+            "names are found again by themselves.",
+            file=directory.path,
+        )
+
+
+def check_ways_around(setup: Setup, directory: RunDirectory) -> None:
+    """Refuse to judge some rounds with ways around what is touched, and others without.
+
+    Raises:
+        RunDirectoryError: OMPL was there and is not, or the other way round.
+    """
+    before, now = directory.record.led_around, setup.leads_around
+    if before is None or now is None or before == now:
+        return
+    if before:
+        raise RunDirectoryError(
+            "this run was begun with OMPL, which leads the arm around what a free approach "
+            "touches; it is not installed now, and more plans would fail",
+            remedy="Install it to carry the run on (pip install 'drake-screw[ompl]'), or run the "
+            "scenario again.",
+            file=directory.path,
+        )
+    raise RunDirectoryError(
+        "this run was begun without OMPL, so that plans fail whose free approach touches "
+        "something; it is installed now, and would lead the arm around",
+        remedy="Run the scenario again, or carry this run on where OMPL is not installed.",
+        file=directory.path,
+    )
