@@ -16,6 +16,7 @@ from drake_screw.execution import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Outcomes, Plan, Turned
 from drake_screw.planning.batch import BatchPlanner
 from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.planning.plan_checker import FAR, PlanChecker
 from drake_screw.robot import Arm
 from drake_screw.typing import Array
 
@@ -36,6 +37,8 @@ class RankedPlan:
         turned: how symmetric bodies are turned.
         arm: that it is for.
         speed: how fast it is to be executed.
+        checker: of the workcell.
+        X_WO: (k, 4, 4) the objects.
         alternatives: the next best plans, the best one first.
     """
 
@@ -44,6 +47,8 @@ class RankedPlan:
     turned: tuple[Turned, ...]
     arm: Arm
     speed: TimeLimits
+    checker: PlanChecker
+    X_WO: Array
     alternatives: tuple[RankedPlan, ...] = ()
 
     @cached_property
@@ -63,8 +68,13 @@ class RankedPlan:
         return min(self.margins, key=self.margins.__getitem__)
 
     @cached_property
+    def clearance(self) -> float:
+        """m, that the robot keeps from all else and itself, as far as `plan_checker.FAR`."""
+        return self.checker.clearance(self.plan, self.X_WO)
+
+    @cached_property
     def length(self) -> float:
-        """rad (or m), length of the joint path; of plans with the same margin the shorter wins."""
+        """rad (or m), length of the joint path."""
         return float(np.linalg.norm(np.diff(self.plan.q, axis=0), axis=1).sum())
 
     @cached_property
@@ -93,11 +103,17 @@ class RankedPlan:
     def _sampled(self) -> tuple[Array, Array, Array]:
         return self.timed.sampled(PERIOD)
 
+    def _kept(self) -> str:
+        if self.clearance >= FAR:
+            return f"nothing comes nearer than {FAR:g} m"
+        return f"something comes as near as {self.clearance:.3f} m"
+
     def __str__(self) -> str:
         turned = "".join(f", with {turn}" for turn in self.turned)
         return (
             f"{self.demonstration.name}{turned}: {len(self.plan.guides)} segments; "
-            f"{self.tightest} comes nearest to a limit, {self.margin:.1%} of its range away"
+            f"{self.tightest} comes nearest to a limit, {self.margin:.1%} of its range away; "
+            f"{self._kept()}"
         )
 
 
@@ -112,6 +128,8 @@ def best_plan(
     speed: TimeLimits | None = None,
 ) -> RankedPlan:
     """The plan with the largest margin that touches nothing.
+
+    Of several with the same margin the one with the largest clearance, then the shortest.
 
     Every turn of every demonstration is tried; where the approach is free and no screw leads to the
     first guiding pose, the other ways to it are, too, and at last those around what is in the way.
@@ -135,7 +153,8 @@ def best_plan(
         found = []
         for demonstration, plan in plans:
             turned = planner.planner.symmetries.named(demonstration, X_WO, plan.angles, names)
-            found.append(RankedPlan(demonstration, plan, turned, arm, speed or TimeLimits()))
+            how = arm, speed or TimeLimits(), planner.checker, X_WO
+            found.append(RankedPlan(demonstration, plan, turned, *how))
         return sorted(found, key=lambda one: (-one.margin, one.length))
 
     candidates = ranked(_plans(planner.planner, demonstrations, X_WO, q_start))
@@ -145,8 +164,11 @@ def best_plan(
         poses = np.broadcast_to(X_WO, (len(some), *X_WO.shape))
         touching = planner.checker.first_collisions([c.plan for c in some], poses).collides
         found += [c for c, touches in zip(some, touching, strict=True) if not touches]
-        if len(found) >= most:
+        following = candidates[first + CHECKED :]
+        if len(found) >= most and following and following[0].margin < found[-1].margin:
             break
+    if len({one.margin for one in found}) < len(found):
+        found.sort(key=lambda one: (-one.margin, -one.clearance, one.length))
     if not found:
         outcomes = planner.all_outcomes(demonstrations, X_WO[None], q_start)[0]
         solved = np.flatnonzero(outcomes.success)

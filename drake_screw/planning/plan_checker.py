@@ -14,6 +14,9 @@ from drake_screw.planning.swept import SweptChecker, Touched, lines
 from drake_screw.robot import Workcell
 from drake_screw.typing import Array
 
+FAR = 0.1
+"""m, beyond which it does not matter how far away things are."""
+
 
 @dataclass(frozen=True, eq=False)
 class Collisions:
@@ -105,6 +108,10 @@ class PlanChecker:
             X_WO: (k, 4, 4) the objects.
         """
         return not bool(self._along([q], X_WO[None]).touches[0])
+
+    def clearance(self, plan: Plan, X_WO: ArrayLike) -> float:
+        """How far in m a plan stays from touching anything, as far as FAR; X_WO (k, 4, 4)."""
+        return self.swept.distance_along(lines(plan.q), np.asarray(X_WO, dtype=float), FAR)
 
     def _along(self, paths: Sequence[Array], X_WO: Array) -> Touched:
         steps = [lines(q) for q in paths]

@@ -20,6 +20,10 @@ CLOSE = 2e-3
 path leaves more open than QUESTIONS."""
 
 
+FINE = 5e-4
+"""m, to which the distance along a path is found."""
+
+
 @dataclass(frozen=True, eq=False)
 class Touched:
     """The first touch of each of N paths, as far as there is one.
@@ -88,6 +92,29 @@ class SweptChecker:
             dense_output(q[first[some] + found.step[some]], found.place[some])
         )
         return Touched(touches, found.step, found.place, pair, there)
+
+    def distance_along(self, q: Array, X_WO: Array, most: float) -> float:
+        """How far apart everything stays along a path, up to `most` and but for FINE, in m.
+
+        Found by halving an interval of clearances; what is left open counts as nearer. Links that
+        cannot touch, whatever the joints between them do, do not count.
+
+        Args:
+            q: (T, 5, n) rad or m, the path's steps.
+            X_WO: (k, 4, 4) the objects.
+            most: m.
+        """
+        q, first = np.ascontiguousarray(q, dtype=float), np.array([0, len(q)])
+        kept, lost = 0.0, most + FINE
+        while lost - kept > FINE:
+            middle = 0.5 * (kept + lost)
+            cell, found = self.cell._replace(clearance=middle), Touches.none(1, q.shape[2])
+            touches_along(cell, room_for(cell), q, first, X_WO[None], found)
+            if found.step[0] >= 0 or found.questions[0] > 0:
+                lost = middle
+            else:
+                kept = middle
+        return min(kept, most)
 
     def _decide(self, found: Touches, q: Array, first: NDArray[np.int64], X_WO: Array) -> None:
         """Ask Drake what is left open, and put down the first touch of each path that it finds."""
