@@ -102,7 +102,7 @@ def load(programs: Sequence[Program]) -> ModuleType:
     name = "arm_" + hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
     if name in sys.modules:
         return sys.modules[name]
-    path = _folder() / f"{name}.py"
+    path = cache_folder() / f"{name}.py"
     if not path.exists() or path.read_text() != _TEXT:
         with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
             file.write(_TEXT)
@@ -134,8 +134,8 @@ def _mark(module: ModuleType) -> Path:
     return Path(str(module.__file__)).with_suffix(".compiled")
 
 
-def _folder() -> Path:
-    """Where arm modules are kept: numba's cache folder if it has one, else the user's.
+def cache_folder() -> Path:
+    """Where compiled code is kept: numba's cache folder if it has one, else the user's.
 
     Where neither can be written to, a temporary folder, which is a new one in every process.
     """

@@ -7,6 +7,9 @@ file only, so the text of all files that are compiled into it is made part of it
 from __future__ import annotations
 
 import hashlib
+import logging
+from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,6 +18,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from drake_screw.planning.compiled import functions
+from drake_screw.planning.compiled.arm_module import cache_folder
 from drake_screw.planning.swept import bounds, cell, convex, motion, separation, simplex, sweep
 from drake_screw.planning.swept.cell import QUESTIONS
 from drake_screw.planning.swept.inner import inner
@@ -22,6 +26,8 @@ from drake_screw.planning.swept.sweep import NONE, set_out, stand
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+
+_LOG = logging.getLogger(__name__)
 
 _sweep = sweep.sweep
 _SOURCES = (bounds, cell, convex, functions, motion, separation, simplex, sweep)
@@ -101,9 +107,11 @@ def _compiled(text: str) -> Any:
     return steps
 
 
-touches_along = _compiled(
-    hashlib.sha256(b"\0".join(Path(m.__file__ or "").read_bytes() for m in _SOURCES)).hexdigest()
-)
+_HASH = hashlib.sha256(
+    b"\0".join(Path(m.__file__ or "").read_bytes() for m in _SOURCES)
+).hexdigest()
+
+touches_along = _compiled(_HASH)
 """Fill in the first touches of N paths.
 
 Args:
@@ -114,3 +122,13 @@ Args:
     X_WO: (N, k, 4, 4) the objects of each.
     found: to fill in, `Touches.none` to begin with.
 """
+
+
+@lru_cache
+def say_if_it_takes_long() -> None:
+    """Says, once, that `touches_along` is about to be compiled, where it never was before."""
+    mark = cache_folder() / f"swept_{_HASH[:24]}.compiled"
+    if not mark.exists():
+        _LOG.info("compiling the collision checker, once; this takes about half a minute")
+        with suppress(OSError):
+            mark.touch()

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_screw.planning.compiled.trace import dense_output
-from drake_screw.planning.swept.along import Touches, touches_along
+from drake_screw.planning.swept.along import Touches, say_if_it_takes_long, touches_along
 from drake_screw.planning.swept.cell import QUESTIONS, room_for
 from drake_screw.planning.swept.shapes import cell_of
 from drake_screw.robot import Workcell
@@ -73,6 +73,7 @@ class SweptChecker:
             first: (N + 1,) where each path begins; none is without a step.
             X_WO: (N, k, 4, 4) the objects of each.
         """
+        say_if_it_takes_long()
         N, n = len(first) - 1, q.shape[2]
         found = Touches.none(N, n)
         touches_along(

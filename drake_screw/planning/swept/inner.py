@@ -12,6 +12,6 @@ inlined = njit(
     _nrt=False,
     no_cpython_wrapper=True,
     no_cfunc_wrapper=True,
-    inline="always",
+    forceinline=True,
 )
 """The same, put in where it is called: a workcell's arrays take long to be passed on."""
