@@ -3,66 +3,71 @@
 from __future__ import annotations
 
 import numpy as np
-from pydrake.multibody.tree import BodyIndex
 
-from drake_screw.robot import Workcell
+from drake_screw.planning.swept.along import Touches, say_if_it_takes_long, touches_along
+from drake_screw.planning.swept.cell import Cell, room_for
 from drake_screw.typing import Array
 
-CELL = 0.1
-"""rad (or m), of the grid on which neighbouring links are looked at."""
+SPACING = 0.1
+"""rad (or m), between the values of the first of two joints at which the second one is swept."""
 
 MOST = 2
-"""Joints between two links at most; of more, the grid would be too large."""
+"""Joints between two links at most; of more, there would be too much to look at."""
 
 
-def never_meet(
-    workcell: Workcell,
-    a: BodyIndex,
-    b: BodyIndex,
-    between: tuple[int, ...],
-    farthest: Array,
-    clearance: float,
-) -> bool:
+def never_meet(cell: Cell) -> bool:
     """Whether two links of an arm stay apart within the joint limits.
 
-    Their distance is looked at on a grid of the joints between them. It cannot fall below what is
-    asked for in between if it is more than the farthest point of b travels in half a cell.
+    The last joint between them is swept through its range. If there is another one, that is done
+    at values SPACING apart of that one, with as much more clearance as it may take away in between.
 
     Args:
-        workcell: of the arm.
-        a, b: bodies; b is moved by more joints.
-        between: the joints that move b and not a, from 0.
-        farthest: (c, 4) for balls that together hold b's shapes: p_WC at q = 0 and radius, m.
-        clearance: m, that they have to be apart.
+        cell: looks at all pairs of shapes of the two links, and at no others.
     """
-    if len(between) > MOST:
+    a, b = cell.pairs[0]
+    joints = np.arange(cell.joint[a] + 1, cell.joint[b] + 1)
+    lower, upper = cell.limits[:, joints]
+    if len(joints) > MOST or not (np.isfinite(lower).all() and np.isfinite(upper).all()):
         return False
-    arm, plant, scene_graph = workcell.arm, workcell.plant, workcell.scene_graph
-    joints = list(between)
-    axes = [
-        np.linspace(lower, upper, 2 + int((upper - lower) / CELL))
-        for lower, upper in zip(arm.lower[joints], arm.upper[joints], strict=True)
-    ]
-    count = int(np.prod([len(axis) for axis in axes]))
-    q = np.tile((arm.lower + arm.upper) / 2.0, (count, 1))
-    q[:, joints] = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(count, -1)
-    chain = arm.screw_chain()
-    E, J = chain.motions(q)[joints[-1]], chain.jacobian(q)[:, :, joints]
-    p = np.einsum("mij,cj->mci", E[:, :3, :3], farthest[:, :3]) + E[:, None, :3, 3]
-    w, v = J[:, None, :3], J[:, None, 3:]
-    speed = np.linalg.norm(np.cross(w, p[..., None], axis=2) + v, axis=2)
-    speed += farthest[:, 3:] * (np.linalg.norm(w, axis=2) > 0.5)
-    travel = (CELL / 2.0 * speed.sum(axis=-1)).max(axis=-1, initial=0.0)
+    values, more = np.zeros(1), 0.0
+    if len(joints) == MOST:
+        parts = int(np.ceil((upper[0] - lower[0]) / SPACING)) + 1
+        values = np.linspace(lower[0], upper[0], parts)
+        half = 0.5 * (upper[0] - lower[0]) / max(parts - 1, 1)
+        more = half * max(_lever(cell, joints, int(b)) for b in np.unique(cell.pairs[:, 1]))
+    q = np.zeros((len(values), 5, cell.limits.shape[1]))
+    q[:, 0, joints[-1]], q[:, 1, joints[-1]] = lower[-1], upper[-1]
+    q[:, 2:4, joints[-1]] = upper[-1] - lower[-1]
+    if len(joints) == MOST:
+        q[:, :2, joints[0]] = values[:, None]
+    # The joints before the two links do not matter; they stay where they may be.
+    still = np.setdiff1d(np.arange(q.shape[2]), joints)
+    q[:, :2, still] = np.clip(0.0, *cell.limits[:, still])
+    found = Touches.none(len(q), q.shape[2])
+    k = int(cell.object.max(initial=-1)) + 1
+    X_WO = np.broadcast_to(np.eye(4), (len(q), k, 4, 4))
+    wider = cell._replace(clearance=cell.clearance + more)
+    say_if_it_takes_long()
+    first = np.arange(len(q) + 1)
+    touches_along(wider, room_for(wider), q, first, np.ascontiguousarray(X_WO), found)
+    return bool((found.step < 0).all() and (found.questions == 0).all())
 
-    root = workcell.diagram.CreateDefaultContext()
-    context = plant.GetMyMutableContextFromRoot(root)
-    query = scene_graph.get_query_output_port()
-    shapes = [plant.GetCollisionGeometriesForBody(plant.get_body(body)) for body in (a, b)]
-    for row, needed in zip(arm.full_positions(q), travel + clearance, strict=True):
-        plant.SetPositions(context, row)
-        here = query.Eval(scene_graph.GetMyContextFromRoot(root))
-        for one in shapes[0]:
-            for other in shapes[1]:
-                if here.ComputeSignedDistancePairClosestPoints(one, other).distance <= needed:
-                    return False
-    return True
+
+def _lever(cell: Cell, joints: Array, b: int) -> float:
+    """m for a rad (or m) of the first of two joints that a point of shape b moves at most.
+
+    The second joint turns it about a point of its axis, which the first one moves along.
+    """
+    S1, S2 = cell.screws[joints]
+    center, reach = cell.X_WG[b, :, 3], float(cell.reach[b])
+    if np.linalg.norm(S1[:3]) < 0.5:
+        return 1.0
+    turns = np.linalg.norm(S2[:3]) > 0.5
+    on_axis = center
+    if turns:
+        foot = np.cross(S2[:3], S2[3:])
+        on_axis = foot + S2[:3] * ((center - foot) @ S2[:3])
+        reach += float(np.linalg.norm(center - on_axis))
+    else:
+        reach += float(np.abs(cell.limits[:, joints[1]]).max())
+    return float(np.linalg.norm(np.cross(S1[:3], on_axis) + S1[3:])) + reach

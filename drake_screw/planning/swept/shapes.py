@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from pydrake.geometry import GeometryId, Role
@@ -13,6 +16,9 @@ from drake_screw.planning.swept.cores import Core, core_of, together
 from drake_screw.planning.swept.never_meet import never_meet
 from drake_screw.robot import Workcell
 from drake_screw.typing import Array
+
+Pair = tuple[int, int]
+"""Two shapes, by their place among all."""
 
 FEW = 4
 """Fixed shapes near one another that are looked at as one, at most."""
@@ -65,87 +71,114 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
         objects.append(object_of.get(index, -1))
         bodies.append(index)
         ids.append(geometry)
-    reach = np.array([core.reach for core in cores], dtype=float)
-    balls = np.column_stack([np.array(X_WG).reshape(-1, 3, 4)[:, :, 3], reach])
-    boxes = np.array([_box_around(X, core) for X, core in zip(X_WG, cores, strict=True)])
-    fixed = (np.array(joint) < 0) & (np.array(objects) < 0)
-    cluster = clusters(boxes, fixed)
-    pairs, standing = _pairs(workcell, bodies, ids, joint, objects, balls, clearance, cluster)
-    chain = arm.screw_chain()
-    joints = np.array(joint, dtype=np.int64)
-    moved = int((joints < 0).sum())
-    ends = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-    behind = joints[ends[:, 0]] + 1
-    slot = behind * (len(joints) - moved) + ends[:, 1] - moved
-    of = np.column_stack([ends[:, 1], behind, cluster[ends[:, 0]]])
-    groups = np.flatnonzero((np.diff(of, axis=0, prepend=-2) != 0).any(axis=1))
-    around = np.empty((len(groups), 2, 3))
-    for i, own in enumerate(np.split(ends[:, 0], groups[1:])):
-        around[i, 0], around[i, 1] = boxes[own, 0].min(axis=0), boxes[own, 1].max(axis=0)
-        if not fixed[own].all():
-            around[i] = [[-np.inf] * 3, [np.inf] * 3]
     frames = np.array(X_WG, dtype=float).reshape(-1, 3, 4)
-    cell = Cell(
-        np.ascontiguousarray(chain.screws, dtype=float),
-        np.stack([chain.lower, chain.upper]).astype(float),
-        together(cores),
-        frames,
-        joints,
-        np.array(objects, dtype=np.int64),
-        reach,
-        np.array([core.box for core in cores], dtype=float).reshape(-1, 3),
-        np.ascontiguousarray(frames[moved:, :, 3].T),
-        joints[moved:].copy(),
-        reach[moved:].copy(),
-        np.searchsorted(joints[moved:], np.arange(arm.n)).astype(np.int64),
-        ends,
-        slot,
-        np.append(groups, len(ends)).astype(np.int64),
-        slot[groups],
-        around,
-        np.array(standing, dtype=np.int64).reshape(-1, 2),
-        float(clearance),
+    joints, chain = np.array(joint, dtype=np.int64), arm.screw_chain()
+    moved = int((joints < 0).sum())
+    reach = np.array([core.reach for core in cores], dtype=float)
+    boxes = np.array([_box_around(X, core) for X, core in zip(frames, cores, strict=True)])
+    nothing = np.zeros(0, dtype=np.int64)
+    alone = Cell(
+        screws=np.ascontiguousarray(chain.screws, dtype=float),
+        limits=np.stack([chain.lower, chain.upper]).astype(float),
+        shapes=together(cores),
+        X_WG=frames,
+        joint=joints,
+        object=np.array(objects, dtype=np.int64),
+        reach=reach,
+        box=np.array([core.box for core in cores], dtype=float).reshape(-1, 3),
+        centers=np.ascontiguousarray(frames[moved:, :, 3].T),
+        moved_joint=joints[moved:].copy(),
+        moved_reach=reach[moved:].copy(),
+        begin=np.searchsorted(joints[moved:], np.arange(arm.n)).astype(np.int64),
+        pairs=nothing.reshape(0, 2),
+        slot=nothing,
+        groups=nothing,
+        group_slot=nothing,
+        around=np.zeros((0, 2, 3)),
+        standing=nothing.reshape(0, 2),
+        clearance=float(clearance),
     )
+    pairs, standing = _looked_at(workcell, bodies, ids, joint, objects)
+    kept = [
+        one
+        for own in _by_bodies(pairs, bodies)
+        if objects[own[0][0]] >= 0 or not never_meet(with_pairs(alone, own, [], boxes))
+        for one in own
+    ]
+    cell = with_pairs(alone, kept, standing, boxes)
     number = {frozenset(bodies): i for i, bodies in enumerate(workcell.pairs)}
-    of_bodies = [number[frozenset((bodies[a], bodies[b]))] for a, b in (*pairs, *standing)]
+    both = np.concatenate([cell.pairs, cell.standing])
+    of_bodies = [number[frozenset((bodies[a], bodies[b]))] for a, b in both.tolist()]
     return cell, np.array(of_bodies, dtype=np.int64)
 
 
-def _pairs(workcell, bodies, ids, joint, objects, balls, clearance, cluster):  # type: ignore[no-untyped-def]
-    """Pairs of shapes that Drake would look at, by their place in the lists, and standing ones."""
-    checker = workcell.checker
+def with_pairs(cell: Cell, pairs: Sequence[Pair], standing: Sequence[Pair], boxes: Array) -> Cell:
+    """A cell that looks at these pairs of its shapes.
+
+    Args:
+        cell: the shapes.
+        pairs: the second one of each moved by more joints than the first one.
+        standing: the arm moves neither.
+        boxes: (S, 2, 3) m, lower and upper corners of boxes in W around the shapes at q = 0.
+    """
+    moved = len(cell.joint) - len(cell.moved_joint)
+    fixed = (cell.joint < 0) & (cell.object < 0)
+    cluster = clusters(boxes, fixed)
+    ordered = sorted(pairs, key=lambda pair: (pair[1], cell.joint[pair[0]], cluster[pair[0]], pair))
+    ends = np.array(ordered, dtype=np.int64).reshape(-1, 2)
+    behind = cell.joint[ends[:, 0]] + 1
+    slot = behind * len(cell.moved_joint) + ends[:, 1] - moved
+    of = np.column_stack([ends[:, 1], behind, cluster[ends[:, 0]]])
+    groups = np.flatnonzero((np.diff(of, axis=0, prepend=-2) != 0).any(axis=1))
+    around = np.empty((len(groups), 2, 3))
+    for i, own in enumerate(np.split(ends[:, 0], groups[1:]) if len(groups) else []):
+        around[i, 0], around[i, 1] = boxes[own, 0].min(axis=0), boxes[own, 1].max(axis=0)
+        if not fixed[own].all():
+            around[i] = [[-np.inf] * 3, [np.inf] * 3]
+    return cell._replace(
+        pairs=ends,
+        slot=slot,
+        groups=np.append(groups, len(ends)).astype(np.int64),
+        group_slot=slot[groups],
+        around=around,
+        standing=np.array(standing, dtype=np.int64).reshape(-1, 2),
+    )
+
+
+def _looked_at(
+    workcell: Workcell,
+    bodies: Sequence[BodyIndex],
+    ids: Sequence[GeometryId],
+    joint: Sequence[int],
+    objects: Sequence[int],
+) -> tuple[list[Pair], list[Pair]]:
+    """Pairs of shapes that Drake would look at, by their place; and those that stand."""
+    checker, plant = workcell.checker, workcell.plant
     inspector = workcell.scene_graph.model_inspector()
-    plant = workcell.plant
     robot = [checker.IsPartOfRobot(plant.get_body(body)) for body in bodies]
     pairs, standing = [], []
-    apart: dict[tuple[BodyIndex, BodyIndex], bool] = {}
-
-    def strangers(a: int, b: int) -> bool:
-        key = bodies[a], bodies[b]
-        if key not in apart:
-            between = tuple(range(joint[a] + 1, joint[b] + 1))
-            own = balls[[body == bodies[b] for body in bodies]]
-            apart[key] = never_meet(workcell, *key, between, own, clearance)
-        return apart[key]
-
-    for a in range(len(bodies)):
-        for b in range(len(bodies)):
-            if joint[a] > joint[b] or (joint[a] == joint[b] and (joint[a] >= 0 or a >= b)):
-                continue
-            if bodies[a] == bodies[b] or not (robot[a] or robot[b]):
-                continue
-            if checker.IsCollisionFilteredBetween(bodies[a], bodies[b]):
-                continue
-            if inspector.CollisionFiltered(ids[a], ids[b]):
-                continue
-            if joint[b] >= 0:
-                if objects[a] < 0 and strangers(a, b):
-                    continue
-                pairs.append((a, b))
-            elif objects[a] >= 0 or objects[b] >= 0:
-                standing.append((a, b))
-    pairs.sort(key=lambda pair: (pair[1], joint[pair[0]], cluster[pair[0]], pair[0]))
+    for a, b in itertools.product(range(len(bodies)), repeat=2):
+        if joint[a] > joint[b] or (joint[a] == joint[b] and (joint[a] >= 0 or a >= b)):
+            continue
+        if bodies[a] == bodies[b] or not (robot[a] or robot[b]):
+            continue
+        if checker.IsCollisionFilteredBetween(bodies[a], bodies[b]):
+            continue
+        if inspector.CollisionFiltered(ids[a], ids[b]):
+            continue
+        if joint[b] >= 0:
+            pairs.append((a, b))
+        elif objects[a] >= 0 or objects[b] >= 0:
+            standing.append((a, b))
     return pairs, standing
+
+
+def _by_bodies(pairs: Sequence[Pair], bodies: Sequence[BodyIndex]) -> list[list[Pair]]:
+    """The pairs of the same two bodies together."""
+    of: dict[tuple[BodyIndex, BodyIndex], list[Pair]] = {}
+    for a, b in pairs:
+        of.setdefault((bodies[a], bodies[b]), []).append((a, b))
+    return list(of.values())
 
 
 def _box_around(X_WG: Array, core: Core) -> Array:
