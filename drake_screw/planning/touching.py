@@ -22,24 +22,24 @@ Pair = tuple[str, str]
 
 
 @dataclass(frozen=True)
-class Collisions:
+class CollisionCounts:
     """How failing instances collide, each by its best attempt.
 
     Attributes:
         failures: how many instances fail.
         collisions: how many of these by a collision.
-        pairs: how many of these by which bodies that touch, the most frequent ones first; the sum
-            is less than `collisions` where it is not known of some.
+        pairs: how many of these by the two bodies that touch, as `pair_name` names them, the most
+            frequent ones first; the sum is less than `collisions` where it is not known of some.
     """
 
     failures: int
     collisions: int
-    pairs: Mapping[Pair, int]
+    pairs: Mapping[str, int]
 
     def __str__(self) -> str:
         words = f"{self.collisions:,} of {self.failures:,} failures are collisions"
         shares = [
-            f"{pair_name(pair)} {share:.0%}"
+            f"{pair} {share:.0%}"
             for pair, count in self.pairs.items()
             if (share := count / self.collisions) >= LEAST
         ]
@@ -91,18 +91,18 @@ def touching_bodies(
     return found or workcell.colliding_bodies(q, X_WO, clearance + NEARLY)[:1]
 
 
-def count_collisions(outcomes: Outcomes, workcell: Workcell) -> Collisions:
+def count_collisions(outcomes: Outcomes, workcell: Workcell) -> CollisionCounts:
     """Count what touches in the failing instances of outcomes (N, D)."""
     best = outcomes.best
     failed = ~best.success & (best.cause != Cause.NOT_TRIED)
     collided = best.cause == Cause.COLLISION
     index, count = np.unique(best.pair[collided], return_counts=True)
-    pairs: dict[Pair, int] = {}
+    pairs: dict[str, int] = {}
     for i in np.argsort(-count, kind="stable").tolist():
         if 0 <= index[i] < len(workcell.pairs):
-            pair = workcell.touching(int(index[i]))
+            pair = pair_name(workcell.touching(int(index[i])))
             pairs[pair] = pairs.get(pair, 0) + int(count[i])
-    return Collisions(int(failed.sum()), int(collided.sum()), pairs)
+    return CollisionCounts(int(failed.sum()), int(collided.sum()), pairs)
 
 
 def cut_short(plan: Plan, outcome: Outcomes) -> Plan:
