@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from numpy.typing import NDArray
 from pydrake.geometry import GeometryId, Role
@@ -67,7 +69,8 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
         ids.append(geometry)
     reach = np.array([core.reach for core in cores], dtype=float)
     balls = np.column_stack([np.array(X_WG).reshape(-1, 3, 4)[:, :, 3], reach])
-    boxes = np.array([_box_around(X, core) for X, core in zip(X_WG, cores, strict=True)])
+    around_each = [_box_around(X, core) for X, core in zip(X_WG, cores, strict=True)]
+    boxes = np.array(around_each).reshape(-1, 2, 3)
     fixed = (np.array(joint) < 0) & (np.array(objects) < 0)
     cluster = clusters(boxes, fixed)
     pairs, standing = _pairs(workcell, bodies, ids, joint, objects, balls, clearance, cluster)
@@ -80,7 +83,8 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
     of = np.column_stack([ends[:, 1], behind, cluster[ends[:, 0]]])
     groups = np.flatnonzero((np.diff(of, axis=0, prepend=-2) != 0).any(axis=1))
     around = np.empty((len(groups), 2, 3))
-    for i, own in enumerate(np.split(ends[:, 0], groups[1:])):
+    for i, (begin, end) in enumerate(itertools.pairwise([*groups.tolist(), len(ends)])):
+        own = ends[begin:end, 0]
         around[i, 0], around[i, 1] = boxes[own, 0].min(axis=0), boxes[own, 1].max(axis=0)
         if not fixed[own].all():
             around[i] = [[-np.inf] * 3, [np.inf] * 3]
