@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.planning.collisions import CollisionFreePlanner
+from drake_screw.planning.touching import cut_short, touch_words, touching_bodies
 from drake_screw.typing import Array
 
 
@@ -27,15 +28,18 @@ def why_not(
         planner: that gave the outcomes.
     """
     best = int(outcomes.best_attempt)
-    cause, segment = Cause(int(outcomes.cause[best])), int(outcomes.segment[best]) + 1
+    cause, where = Cause(int(outcomes.cause[best])), f"segment {int(outcomes.segment[best]) + 1}"
     chosen, names = demonstrations[best], planner.planner.chain.joint_names
     match cause:
         case Cause.JOINT_LIMIT:
             joint = names[int(outcomes.joint[best])]
-            return f"with {chosen.name}, {joint} meets its limit in segment {segment}"
+            return f"with {chosen.name}, {joint} meets its limit in {where}"
         case Cause.COLLISION:
-            variant = int(outcomes.variant[best])
-            plan = planner.planner.plan(chosen, X_WO, q_start, variant)
-            return f"with {chosen.name}, {planner.checker.explain(plan, X_WO)}"
+            found, clearance = outcomes[best], planner.checker.swept.clearance
+            plan = planner.planner.plan(chosen, X_WO, q_start, int(found.variant))
+            q, workcell = cut_short(plan, found).q[-1], planner.checker.workcell
+            bodies = touching_bodies(found, workcell, q, X_WO, clearance)
+            touches = ", ".join(touch_words(pair, clearance) for pair in bodies)
+            return f"with {chosen.name}, {touches or 'the arm touches something'} in {where}"
         case _:
-            return f"with {chosen.name}, segment {segment} is out of reach"
+            return f"with {chosen.name}, {where} is out of reach"

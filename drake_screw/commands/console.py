@@ -79,6 +79,8 @@ def show_event(event: Event, regions: Regions, console: Console) -> None:
 def show_summary(summary: RunSummary, console: Console) -> None:
     """The statement a finished run makes, and where to find the rest."""
     console.print(certificate_panel(summary.statement, certified=summary.certified))
+    if summary.collisions is not None and summary.collisions.collisions:
+        console.print(Text(f"in the last round {summary.collisions}"), soft_wrap=True)
     console.print(Text(f"run directory: {summary.directory}"), soft_wrap=True)
 
 

@@ -41,6 +41,7 @@ def evaluate(
 
     The output has a column for each demonstration; its cells are 0:0 for success, s:j failed in
     screw segment s at the limit of joint j (both counted from 1), s:n unreachable, s:c collision.
+    Which two bodies touch stands in a column of its own.
     """
     out = Output(json)
     from drake_screw.runs.outcome_table import tabulate_outcomes

@@ -83,7 +83,10 @@ def print_instance(reader: RunReader, selection: Selection, console: Console) ->
 def instance_table(attempts: Sequence[Attempt]) -> Table:
     """All demonstrations of an instance side by side."""
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for name in ("", "demonstration", "outcome", "segment", "joint", "along it", "least margin"):
+    at_fault = "bodies" if any(a.bodies for a in attempts) else "joint"
+    if at_fault == "bodies" and any(a.failed_joint is not None for a in attempts):
+        at_fault = "joint or bodies"
+    for name in ("", "demonstration", "outcome", "segment", at_fault, "along it", "least margin"):
         right = name in ("", "segment", "along it", "least margin")
         table.add_column(name, justify="right" if right else "left")
     for tried in attempts:
@@ -94,7 +97,7 @@ def instance_table(attempts: Sequence[Attempt]) -> Table:
             tried.demonstration.name,
             Text(OUTCOME_NAMES[tried.cause], style="green" if tried.plan.success else "yellow"),
             "" if failed is None else f"{failed + 1} of {len(tried.guides)}",
-            "" if at is None else names[at],
+            names[at] if at is not None else ", ".join(tried.bodies[0]) if tried.bodies else "",
             "" if failed is None else f"{float(tried.plan.outcome.fraction):.1%}",
             f"{margin:.3f} ({names[joint]})",
         )

@@ -144,19 +144,19 @@ class Workcell:
     def colliding_bodies(
         self, q: ArrayLike, X_WO: ArrayLike, clearance: float = 0.0
     ) -> tuple[tuple[str, str], ...]:
-        """Names of bodies that touch at q (n,), or are nearer than a clearance in m, in pairs."""
+        """Names of bodies that touch at q (n,), or are nearer than a clearance in m.
+
+        In pairs, the robot's first; those that are nearest, or deepest in one another, come first.
+        """
         found = self.checker.CalcRobotClearance(self.positions(q, X_WO), clearance)
-        name = [
-            (self.plant.get_body(a).name(), self.plant.get_body(b).name())
-            for a, b, distance in zip(
-                found.robot_indices(),
-                found.other_indices(),
-                found.distances(),
-                strict=True,
-            )
-            if distance < clearance
+        distances = np.asarray(found.distances())
+        robot, other = found.robot_indices(), found.other_indices()
+        names = [
+            (self.plant.get_body(robot[i]).name(), self.plant.get_body(other[i]).name())
+            for i in np.argsort(distances, kind="stable").tolist()
+            if distances[i] < clearance
         ]
-        return tuple(dict.fromkeys(name))
+        return tuple(dict.fromkeys(names))
 
 
 def build_workcell(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -100,6 +100,7 @@ def outcomes_csv(
     names: list[str],
     area: WorkArea,
     turns: Mapping[str, Array] | None = None,
+    touching: Mapping[str, Sequence[str]] | None = None,
 ) -> str:
     """A row for each instance: where it is, then the outcome code of each demonstration.
 
@@ -111,6 +112,7 @@ def outcomes_csv(
         names: of the D demonstrations.
         area: names the k objects.
         turns: further columns (N,) of angles in rad, by their names: how bodies are turned.
+        touching: further columns (N,) of words, by their names: what touches.
     """
     header, cells = [], []
     for i in range(len(area.objects)):
@@ -123,4 +125,6 @@ def outcomes_csv(
     cells += outcomes.codes().T.tolist()
     turns = turns or {}
     cells += [[f"{v:.4f}" for v in column.tolist()] for column in turns.values()]
-    return csv_text([[*header, *names, *turns], *zip(*cells, strict=True)])
+    touching = touching or {}
+    cells += [list(column) for column in touching.values()]
+    return csv_text([[*header, *names, *turns, *touching], *zip(*cells, strict=True)])

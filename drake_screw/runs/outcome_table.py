@@ -12,8 +12,17 @@ import numpy as np
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
-from drake_screw.planning import Outcomes
+from drake_screw.planning import Cause, Outcomes
 from drake_screw.planning.symmetry import TOOL
+from drake_screw.planning.touching import (
+    CollisionCounts,
+    Pair,
+    count_collisions,
+    cut_short,
+    known_pair,
+    pair_name,
+    touching_bodies,
+)
 from drake_screw.runs.instance_tables import outcomes_csv, read_instances, unlike_fixed
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import Array, PathLike
@@ -31,6 +40,7 @@ class OutcomeTable:
             column's name.
         success_rates: share of the instances that each demonstration solves, by its name.
         solved: share that at least one of them solves.
+        collisions: how the others collide; None where collisions are not looked at.
         seconds: that planning took.
     """
 
@@ -40,6 +50,7 @@ class OutcomeTable:
     unlike_fixed: dict[str, int]
     success_rates: dict[str, float]
     solved: float
+    collisions: CollisionCounts | None
     seconds: float
 
     def __str__(self) -> str:
@@ -52,7 +63,10 @@ class OutcomeTable:
             for name, count in self.unlike_fixed.items()
         )
         lines += (f"  {name}: {rate:.1%}" for name, rate in self.success_rates.items())
-        lines += [f"solved by at least one: {self.solved:.2%}", f"written to {self.output}"]
+        lines.append(f"solved by at least one: {self.solved:.2%}")
+        if self.collisions is not None and self.collisions.collisions:
+            lines.append(str(self.collisions))
+        lines.append(f"written to {self.output}")
         return "\n".join(lines)
 
 
@@ -66,7 +80,8 @@ def tabulate_outcomes(
         demonstrations: folder of recordings, of the robot that the scenario says they are of.
         instances: CSV to read, see `read_instances`.
         output: CSV to write, see `outcomes_csv`; with a column `demonstration:body` for each body
-            that a demonstration may turn.
+            that a demonstration may turn, and a column `demonstration:touches` for each
+            demonstration of which a plan collides, with the bodies: "left_hand-bowl".
 
     Raises:
         DrakeScrewError: anything that cannot be read or written; nothing is written then.
@@ -78,7 +93,9 @@ def tabulate_outcomes(
     outcomes = setup.evaluate(learned, x_y_yaw)
     seconds = time.perf_counter() - began
     turns = _turns(setup, learned, setup.area.X_WO(x_y_yaw), outcomes)
-    text = outcomes_csv(x_y_yaw, outcomes, [d.name for d in learned], setup.area, turns)
+    touching = _touching(setup, learned, setup.area.X_WO(x_y_yaw), outcomes)
+    names = [d.name for d in learned]
+    text = outcomes_csv(x_y_yaw, outcomes, names, setup.area, turns, touching)
     with writing(output, WRITABLE_OUTPUT):
         write_text(output, text)
     rates = outcomes.success.mean(axis=0).tolist()
@@ -89,6 +106,9 @@ def tabulate_outcomes(
         unlike_fixed=unlike_fixed(x_y_yaw, setup.area),
         success_rates={d.name: rate for d, rate in zip(learned, rates, strict=True)},
         solved=float(outcomes.any_success.mean()),
+        collisions=(
+            count_collisions(outcomes, setup.workcell) if scenario.planner.collision else None
+        ),
         seconds=seconds,
     )
 
@@ -108,3 +128,30 @@ def _turns(
             turned = np.remainder(angles[:, body] + np.pi, 2.0 * np.pi) - np.pi
             columns[f"{demonstration.name}:{names[body]}"] = turned
     return columns
+
+
+def _touching(
+    setup: Setup, demonstrations: Sequence[Demonstration], X_WO: Array, outcomes: Outcomes
+) -> dict[str, list[str]]:
+    """Columns (N,) for demonstrations that collide: which bodies touch, "" where none do."""
+    columns = {}
+    for d, demonstration in enumerate(demonstrations):
+        column = [""] * len(X_WO)
+        for i in np.flatnonzero(outcomes.cause[:, d] == Cause.COLLISION).tolist():
+            bodies = _bodies(setup, demonstration, X_WO[i], outcomes[i, d])
+            column[i] = pair_name(bodies[0]) if bodies else ""
+        if any(column):
+            columns[f"{demonstration.name}:touches"] = column
+    return columns
+
+
+def _bodies(
+    setup: Setup, demonstration: Demonstration, X_WO: Array, outcome: Outcomes
+) -> tuple[Pair, ...]:
+    """What touches, of an outcome of shape (); planned again where it does not say that."""
+    known = known_pair(outcome, setup.workcell)
+    if known is not None:
+        return (known,)
+    plan = cut_short(setup.judged_plan(demonstration, X_WO, outcome), outcome)
+    clearance = setup.scenario.planner.clearance
+    return touching_bodies(outcome, setup.workcell, plan.q[-1], X_WO, clearance)

@@ -240,7 +240,9 @@ class RunReader:
         names = [o.name for o in self.setup.area.objects]
         turned = self.setup.symmetries.named(demonstration, X_WO, plan.angles, names)
         tried = replace(attempt(workcell.arm, number, demonstration, X_WO, plan), turned=turned)
-        return collided(tried, found, workcell) if found.cause == Cause.COLLISION else tried
+        if found.cause != Cause.COLLISION:
+            return tried
+        return collided(tried, found, workcell, self.setup.scenario.planner.clearance)
 
     def _event(self, round: int) -> RoundFinished:
         """A round as the run had it; without drawing or planning anything."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import RunDirectoryError
+from drake_screw.planning.touching import CollisionCounts, count_collisions
 from drake_screw.runs.codec import plain
 from drake_screw.runs.run import Run
 
@@ -37,6 +38,8 @@ class RunSummary:
         statement: the same in sentences.
         demonstrations: their names, in the order of use.
         rounds: in their order.
+        collisions: how the failing instances of its last round collide, each by its best attempt;
+            None where collisions are not looked at.
     """
 
     directory: Path
@@ -48,6 +51,7 @@ class RunSummary:
     statement: tuple[str, ...]
     demonstrations: tuple[str, ...]
     rounds: tuple[RoundSummary, ...]
+    collisions: CollisionCounts | None = None
 
     @property
     def certified(self) -> bool:
@@ -68,6 +72,10 @@ def summarize_run(run: Run) -> RunSummary:
             remedy=f"Finish it first: drake-screw run --resume {run.directory.path}",
             file=run.directory.path,
         )
+    collisions = None
+    if run.setup.scenario.planner.collision and record.rounds:
+        last, _ = run.reader.evaluated(len(record.rounds) - 1)
+        collisions = count_collisions(last.outcomes, run.setup.workcell)
     return RunSummary(
         directory=run.directory.path,
         scenario=record.scenario,
@@ -87,4 +95,5 @@ def summarize_run(run: Run) -> RunSummary:
             )
             for entry in record.rounds
         ),
+        collisions=collisions,
     )

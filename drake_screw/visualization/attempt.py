@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause, Outcomes, Plan, Turned
+from drake_screw.planning.touching import Pair, cut_short, touch_words, touching_bodies
 from drake_screw.robot import Arm, Workcell
 from drake_screw.screws import Screw, screw_between
 from drake_screw.typing import Array
@@ -36,6 +37,7 @@ class Attempt:
         plan: up to where it failed if it did.
         turned: how symmetric bodies are turned.
         bodies: names of the pairs of bodies that touch where the plan ended, after a collision.
+        clearance: m, that they had to keep.
     """
 
     arm: Arm
@@ -45,7 +47,8 @@ class Attempt:
     starts: Array
     plan: Plan
     turned: tuple[Turned, ...] = ()
-    bodies: tuple[tuple[str, str], ...] = ()
+    bodies: tuple[Pair, ...] = ()
+    clearance: float = 0.0
 
     @property
     def guides(self) -> Array:
@@ -145,33 +148,20 @@ def attempt(
     return Attempt(arm, number, demonstration, X_WO, starts, plan)
 
 
-def cut_short(plan: Plan, outcome: Outcomes) -> Plan:
-    """A plan up to where another outcome of it, of shape (), says that it ended.
+def collided(
+    attempt: Attempt, outcome: Outcomes, workcell: Workcell, clearance: float = 0.0
+) -> Attempt:
+    """An attempt cut short where an outcome of shape (), a collision, says that it ended.
 
-    A collision is what planning for the joints alone does not see.
+    Args:
+        attempt: whose plan may be whole.
+        outcome: where it ended; the bodies that touch are found there if it does not name them.
+        workcell: that it was found in.
+        clearance: m, that had to be kept.
     """
-    segment, fraction = int(outcome.segment), float(outcome.fraction)
-    progress, end = plan.segment + plan.s, segment + fraction
-    k = int(np.searchsorted(progress, end))
-    if k == 0 or k == len(progress):
-        kept = slice(0, max(k, 1))
-        q, segments, s = plan.q[kept], plan.segment[kept], plan.s[kept]
-        return replace(plan, q=q, segment=segments, s=s, outcome=outcome)
-    share = (end - progress[k - 1]) / (progress[k] - progress[k - 1])
-    last = plan.q[k - 1] + share * (plan.q[k] - plan.q[k - 1])
-    return replace(
-        plan,
-        q=np.concatenate([plan.q[:k], last[None]]),
-        segment=np.append(plan.segment[:k], segment),
-        s=np.append(plan.s[:k], fraction),
-        outcome=outcome,
-    )
-
-
-def collided(attempt: Attempt, outcome: Outcomes, workcell: Workcell) -> Attempt:
-    """An attempt cut short where an outcome of shape (), a collision, says that it ended."""
     plan = cut_short(attempt.plan, outcome)
-    return replace(attempt, plan=plan, bodies=workcell.colliding_bodies(plan.q[-1], attempt.X_WO))
+    bodies = touching_bodies(outcome, workcell, plan.q[-1], attempt.X_WO, clearance)
+    return replace(attempt, plan=plan, bodies=bodies, clearance=clearance)
 
 
 def headline(attempt: Attempt) -> str:
@@ -195,7 +185,7 @@ def headline(attempt: Attempt) -> str:
             f"{limit:.3f} {arm.units[joint]}".replace("-", "−")
         )
     if attempt.cause == Cause.COLLISION:
-        touching = "; ".join(f"{a} touches {b}" for a, b in attempt.bodies[:2])
+        touching = "; ".join(touch_words(pair, attempt.clearance) for pair in attempt.bodies[:2])
         return f"fails {where}: {touching or 'the arm touches something'}"
     return (
         f"fails {where}: the end effector gets no farther along this screw; the arm is stretched "

@@ -2,9 +2,10 @@
 
 Under ``/attempts/01`` and so on, one for each demonstration drawn: ``segments/01``, ... (the end
 effector's path), ``axes/01``, ... (the screws), ``frames`` (the guiding poses), ``turned`` (how
-symmetric objects are turned), ``ghost`` (the arm where the plan failed) and ``dial`` (the range of
-the joint at its limit, with a needle). Under
-``/instance`` the objects. The robot itself is the one of `Scene`, at ``/workcell``.
+symmetric objects are turned), ``ghost`` (the arm where the plan failed, and under
+``ghost/touching`` the bodies that touch there) and ``dial`` (the range of the joint at its limit,
+with a needle). Under ``/instance`` the objects. The robot itself is the one of `Scene`, at
+``/workcell``.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
 from drake_screw.visualization.screw_drawing import draw_screw
 
 BOWL = "#f4c95d"
-GHOST_OPACITY, AHEAD_OPACITY = 0.22, 0.35
+GHOST_OPACITY, AHEAD_OPACITY, TOUCHING_OPACITY = 0.22, 0.35, 0.6
 SAMPLES = 120
 DIAL = (0.110, 0.145)
 RING = 0.160
@@ -63,6 +64,7 @@ class Inspector:
     ) -> None:
         self.meshcat = meshcat
         self.linkage = Linkage(workcell)
+        self._workcell = workcell
         self._objects = tuple(objects)
         self.clear()
 
@@ -103,6 +105,12 @@ class Inspector:
         if not attempt.plan.success:
             last, color = attempt.plan.q[-1], STATUS_COLORS[FAILED]
             self.linkage.draw_copy(self.meshcat, f"{path}/ghost", last, color, GHOST_OPACITY)
+            positions = self._workcell.positions(last, attempt.X_WO)
+            touching = [name for pair in attempt.bodies for name in pair]
+            place = f"{path}/ghost/touching"
+            self.linkage.draw_bodies(
+                self.meshcat, place, touching, positions, color, TOUCHING_OPACITY
+            )
         if attempt.failed_joint is not None:
             moving |= self._draw_dial(f"{path}/dial", attempt, attempt.failed_joint, q)
             X_WJ = self.linkage.joint_frames(attempt.failed_joint, attempt.plan.q[-1:])[0]

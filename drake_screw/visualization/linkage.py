@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import ArrayLike
-from pydrake.geometry import Meshcat, Role, SceneGraph
+from pydrake.geometry import FrameId, Meshcat, Role, SceneGraph
+from pydrake.multibody.tree import BodyIndex
 
 from drake_screw.robot import Arm, Workcell
 from drake_screw.typing import Array
@@ -78,14 +81,44 @@ class Linkage:
         self, meshcat: Meshcat, path: str, q: ArrayLike, color: str, opacity: float
     ) -> None:
         """Draw the links once more, at one configuration q (n,), all in one colour."""
-        inspector = self._graph.model_inspector()
         X_WL = self.poses(np.asarray(q, dtype=float)[None])[0]
-        larger = np.diag([HALO, HALO, HALO, 1.0])
         for (_, frame, name), X in zip(self._links, X_WL, strict=True):
-            meshcat.SetTransform(f"{path}/{name}", X)
-            for geometry in inspector.GetGeometries(frame, Role.kIllustration):
-                part = inspector.GetName(geometry).replace("::", "/")
-                place = f"{path}/{name}/{part}"
-                meshcat.SetObject(place, inspector.GetShape(geometry), rgba(color, opacity))
-                X_LG = inspector.GetPoseInFrame(geometry).GetAsMatrix4()
-                meshcat.SetTransform(place, X_LG @ larger)
+            self._draw_body(meshcat, f"{path}/{name}", frame, X, color, opacity)
+
+    def draw_bodies(
+        self,
+        meshcat: Meshcat,
+        path: str,
+        names: Iterable[str],
+        positions: Array,
+        color: str,
+        opacity: float,
+    ) -> None:
+        """Draw bodies of the workcell once more by their names, whatever they belong to.
+
+        Where several have a name, each is drawn. `positions` are those of the whole plant.
+        """
+        plant, inspector = self._plant, self._graph.model_inspector()
+        plant.SetPositions(self._context, positions)
+        wanted = set(names)
+        for body in (plant.get_body(BodyIndex(i)) for i in range(1, plant.num_bodies())):
+            if body.name() not in wanted:
+                continue
+            frame = plant.GetBodyFrameIdOrThrow(body.index())
+            X_WB = plant.EvalBodyPoseInWorld(self._context, body).GetAsMatrix4()
+            name = inspector.GetName(frame).replace("::", "/")
+            self._draw_body(meshcat, f"{path}/{name}", frame, X_WB, color, opacity)
+
+    def _draw_body(
+        self, meshcat: Meshcat, path: str, frame: FrameId, X_WB: Array, color: str, opacity: float
+    ) -> None:
+        """The looks of a body a little larger; its collision shapes where it has none."""
+        inspector = self._graph.model_inspector()
+        looks = inspector.GetGeometries(frame, Role.kIllustration)
+        meshcat.SetTransform(path, X_WB)
+        larger = np.diag([HALO, HALO, HALO, 1.0])
+        for geometry in looks or inspector.GetGeometries(frame, Role.kProximity):
+            place = f"{path}/{inspector.GetName(geometry).replace('::', '/')}"
+            meshcat.SetObject(place, inspector.GetShape(geometry), rgba(color, opacity))
+            X_BG = inspector.GetPoseInFrame(geometry).GetAsMatrix4()
+            meshcat.SetTransform(place, X_BG @ larger)

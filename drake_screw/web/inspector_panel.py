@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from drake_screw.planning import Cause, Outcomes
+from drake_screw.planning.touching import known_pair
+from drake_screw.robot import Workcell
 from drake_screw.runs.reader import RunReader
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
@@ -30,7 +32,7 @@ from drake_screw.web.selection import Selection, steps
 
 KEY = (
     (STATUS_COLORS[DONE], "screw segment done"),
-    (STATUS_COLORS[FAILED], "failed: the segment, the arm's ghost, the joint"),
+    (STATUS_COLORS[FAILED], "failed: the segment, the arm's ghost, the joint or what touches"),
     (STATUS_COLORS[AHEAD], "never reached"),
     (AXIS, "screw axis; the arrow around it is its turn"),
 )
@@ -56,7 +58,9 @@ def panel_state(
         here = event.evaluation.x_y_yaw[selection.instance]
         found = reader.outcomes(selection.round, selection.instance)
         attempts = [
-            attempt_entry(number, demonstration.name, found[number], drawn.get(number))
+            attempt_entry(
+                number, demonstration.name, found[number], drawn.get(number), reader.setup.workcell
+            )
             for number, demonstration in enumerate(event.demonstrations)
         ]
         instance = {
@@ -87,7 +91,9 @@ def panel_state(
     }
 
 
-def attempt_entry(number: int, name: str, found: Outcomes, drawn: Drawn | None) -> dict[str, Any]:
+def attempt_entry(
+    number: int, name: str, found: Outcomes, drawn: Drawn | None, workcell: Workcell
+) -> dict[str, Any]:
     """A line of the panel's list of demonstrations.
 
     Args:
@@ -95,12 +101,16 @@ def attempt_entry(number: int, name: str, found: Outcomes, drawn: Drawn | None) 
         name: of the demonstration.
         found: of shape (), what the run found.
         drawn: the attempt, if it is drawn; its own outcome is shown then.
+        workcell: knows bodies that touch by their names.
     """
     outcome = found if drawn is None else drawn.attempt.plan.outcome
     cause = Cause(int(outcome.cause))
     words = OUTCOME_NAMES[cause]
     if cause not in (Cause.SUCCESS, Cause.NOT_TRIED):
         words += f" in segment {int(outcome.segment) + 1}, {float(outcome.fraction):.0%} along it"
+    pair = known_pair(outcome, workcell)
+    bodies = (() if pair is None else (pair,)) if drawn is None else drawn.attempt.bodies[:1]
+    words += "".join(f": {a}, {b}" for a, b in bodies)
     return {
         "number": number + 1,
         "name": name,

@@ -13,6 +13,7 @@ from drake_screw.acquisition import RoundFinished
 from drake_screw.assembly.setup import Setup
 from drake_screw.files import write_text, writing
 from drake_screw.planning import Cause
+from drake_screw.planning.touching import count_collisions
 from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.linkage import Linkage
@@ -115,12 +116,19 @@ def _round(reader: RunReader, selection: Selection, linkage: Linkage, page: str)
         "number": selection.round + 1,
         "headline": round_headline(event),
         "details": details(event, event.regions),
+        "collisions": _collisions(reader, event),
         "heat_map": _picture(folder / "heat_map.png"),
         "K": event.regions.K,
         "regions": _regions(event),
         "instance": _instance(reader, selection, linkage, page),
         "others": _others(reader, selection, linkage),
     }
+
+
+def _collisions(reader: RunReader, event: RoundFinished) -> str:
+    """Which bodies touch in the failing instances; "" where none do."""
+    found = count_collisions(event.evaluation.outcomes, reader.setup.workcell)
+    return str(found) if found.collisions else ""
 
 
 def _regions(event: RoundFinished) -> list[dict[str, Any]]:

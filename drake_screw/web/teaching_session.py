@@ -226,7 +226,8 @@ class TeachingSession:
         plan = self._setup.judged_plan(demonstration, X_WO, found)
         tried = attempt(workcell.arm, self._number, demonstration, X_WO, plan)
         if found.cause == Cause.COLLISION:
-            tried = collided(tried, found, workcell)
+            clearance = self._setup.scenario.planner.clearance
+            tried = collided(tried, found, workcell, clearance)
         self._inspector.draw(tried)
         self._segments = _segment_lines(tried)
         self._message = (

@@ -22,7 +22,9 @@ ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 def scenario_of(collision=False, objects=(), tool=None, approach="screw"):
     return SimpleNamespace(
         coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
-        planner=SimpleNamespace(collision=collision, approach=approach, turns=24),
+        planner=SimpleNamespace(
+            collision=collision, approach=approach, turns=24, clearance=0.0, joint_margin=0.0
+        ),
         objects=objects,
         robot=SimpleNamespace(tool=tool),
     )

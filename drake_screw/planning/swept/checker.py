@@ -84,7 +84,8 @@ class SweptChecker:
             np.ascontiguousarray(X_WO, dtype=float),
             found,
         )
-        pair = np.where(found.pair >= 0, self._pair[found.pair], -1)
+        pair, known = np.full(N, -1), found.pair >= 0
+        pair[known] = self._pair[found.pair[known]]
         self._decide(found, q, first, X_WO)
         touches = found.step >= 0
         there = np.full((N, n), np.nan)

@@ -75,7 +75,9 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
     joints, chain = np.array(joint, dtype=np.int64), arm.screw_chain()
     moved = int((joints < 0).sum())
     reach = np.array([core.reach for core in cores], dtype=float)
-    boxes = np.array([_box_around(X, core) for X, core in zip(frames, cores, strict=True)])
+    boxes = np.array(
+        [_box_around(X, core) for X, core in zip(frames, cores, strict=True)], dtype=float
+    ).reshape(-1, 2, 3)
     nothing = np.zeros(0, dtype=np.int64)
     alone = Cell(
         screws=np.ascontiguousarray(chain.screws, dtype=float),
@@ -131,7 +133,8 @@ def with_pairs(cell: Cell, pairs: Sequence[Pair], standing: Sequence[Pair], boxe
     of = np.column_stack([ends[:, 1], behind, cluster[ends[:, 0]]])
     groups = np.flatnonzero((np.diff(of, axis=0, prepend=-2) != 0).any(axis=1))
     around = np.empty((len(groups), 2, 3))
-    for i, own in enumerate(np.split(ends[:, 0], groups[1:]) if len(groups) else []):
+    for i, (begin, end) in enumerate(itertools.pairwise([*groups.tolist(), len(ends)])):
+        own = ends[begin:end, 0]
         around[i, 0], around[i, 1] = boxes[own, 0].min(axis=0), boxes[own, 1].max(axis=0)
         if not fixed[own].all():
             around[i] = [[-np.inf] * 3, [np.inf] * 3]
