@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from pathlib import Path
 
@@ -81,3 +82,23 @@ def test_evaluate_agrees_with_the_outcomes_of_another_planner(
     both = (a != "0:0") & (b != "0:0")
     segment = [np.array([c.split(":")[0] for c in codes[both]]) for codes in (a, b)]
     assert (segment[0] == segment[1]).mean() >= 0.97
+
+
+def test_the_bodies_that_touch_have_a_column(command, library, places) -> None:
+    lamp = "obstacles=[{name: lamp, sphere: {radius: 0.1}, xyz: [0.9, 0.3, 0.1]}]"
+    code, out, _ = command(
+        "evaluate", "pouring", "--demonstrations", library, "--instances", places,
+        "--output", "out.csv", "--set", lamp, "--set", "objects.0.symmetry=null",
+    )  # fmt: skip
+    assert code == 0
+    rows = list(csv.DictReader(Path("out.csv").read_text().splitlines()))
+    collided = 0
+    for row in rows:
+        for name in ("demo_01", "demo_02", "demo_03"):
+            bodies = row.get(f"{name}:touches", "")
+            assert bool(bodies) == row[name].endswith(":c")
+            collided += bool(bodies)
+            assert bodies == "" or bodies.endswith("-lamp")
+    assert collided > 0
+    assert rows[1]["demo_02"].endswith(":c")
+    assert re.search(r"\d of \d failures are collisions: (\w+-lamp \d+%(, )?)+$", out, re.MULTILINE)

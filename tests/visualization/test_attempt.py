@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import BatchPlanner, Cause
 from drake_screw.planning.outcomes import one_outcome
+from drake_screw.planning.touching import cut_short
 from drake_screw.robot import (
     BoxShape,
     ObjectConfig,
@@ -31,16 +33,16 @@ from drake_screw.visualization.attempt import (
     FAILED,
     Attempt,
     attempt,
-    cut_short,
+    collided,
     describe_segment,
     headline,
 )
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.web.arm_sketch import arm_sketch
-from drake_screw.web.attempt_tables import attempts_csv, attempts_json
+from drake_screw.web.attempt_tables import attempt_record, attempts_csv, attempts_json
 from drake_screw.web.charts import joint_chart, joint_strip, work_area_map
-from drake_screw.web.inspector_panel import drawn_state
+from drake_screw.web.inspector_panel import attempt_entry, drawn_state
 from tests.visualization.conftest import BOWL
 from tests.visualization.test_scene import BAXTER, TABLE
 
@@ -249,3 +251,20 @@ def test_a_success_has_no_ghost(easy, workcell, meshcat) -> None:
     Inspector(meshcat, workcell, OBJECTS).draw(easy)
     assert not meshcat.HasPath("/attempts/01/ghost")
     assert not meshcat.HasPath("/attempts/01/dial")
+
+
+def test_bodies_that_touch_are_drawn_where_they_do(easy, workcell, meshcat) -> None:
+    pair = next(i for i in range(len(workcell.pairs)) if workcell.touching(i)[1] == "bowl")
+    robot, _ = workcell.touching(pair)
+    outcome = replace(one_outcome(Cause.COLLISION, 1, -1, 0.5), pair=np.array(pair, np.int16))
+    tried = collided(easy, outcome, workcell)
+    assert headline(tried).endswith(f"50.0% along it: {robot} touches bowl")
+    assert attempt_record(tried)["touching"] == [[robot, "bowl"]]
+    drawn = Inspector(meshcat, workcell, OBJECTS).draw(tried)
+    assert meshcat.HasPath("/attempts/01/ghost/baxter/left_hand")
+    for path in (f"baxter/{robot}", "bowl/bowl"):
+        assert meshcat.HasPath(f"/attempts/01/ghost/touching/{path}"), path
+    assert not meshcat.HasPath("/attempts/01/ghost/touching/table")
+    for seen in (None, drawn):
+        words = attempt_entry(0, "made", outcome, seen, workcell)["words"]
+        assert words == f"collision in segment 2, 50% along it: {robot}, bowl"
