@@ -27,12 +27,16 @@ from pydrake.math import RigidTransform
 from scipy.optimize import nnls
 from scipy.spatial import ConvexHull
 
-from drake_screw.planning.swept.cores import core_of, together
+from drake_screw.planning.swept.convex import BOX, HULL, POINT, SEGMENT
+from drake_screw.planning.swept.cores import Core, core_of, together
 from drake_screw.screws import exp, pose
 from tests.planning.swept.compiled import bounds_on_distance, farthest, nearest_points
 
 CLOSE = 2e-5
-"""m, within which bounds and Drake agree: both are iterative."""
+"""m, within which Drake is hardly ever wrong, and no bound may be."""
+
+DRAKES = 1e-3
+"""m, by which Drake's distances of round shapes and of hulls are too large at worst."""
 
 BALLS = 2e-5
 """m, of two of `convex.BALL`: as deep as that the upper bound tells."""
@@ -127,11 +131,53 @@ def test_bounds_hold_drakes_distances(solids: list[Shape]) -> None:
     apart = true > CLOSE
     assert 0.2 < apart.mean() < 0.8
     assert (lower <= true + CLOSE).all()
-    assert (upper[apart] >= true[apart] - CLOSE).all()
-    assert (upper - lower)[apart].max() < CLOSE
+    assert (upper[apart] >= true[apart] - DRAKES).all()
+    assert (upper[apart] >= true[apart] - CLOSE).mean() > 0.98
+    assert (upper - lower)[apart].max() < 2e-3
+    assert np.quantile((upper - lower)[apart], 0.9) < 2.0 * CLOSE
     within = true < -BALLS
     assert (upper[within] < -1e-5).all()
-    assert (upper[~within] >= true[~within] - CLOSE).all()
+    assert (upper[~within] >= true[~within] - DRAKES).all()
+
+
+def corners_of(core: Core) -> np.ndarray:
+    """Corners (c, 3) of a core that has any."""
+    if core.kind == HULL:
+        return core.corners
+    signs = np.array(list(itertools.product([-1.0, 1.0], repeat=3)))
+    return np.unique(signs * core.size, axis=0)
+
+
+def test_bounds_hold_the_distances_of_polytopes(solids: list[Shape]) -> None:
+    """By nonnegative least squares, of boxes, hulls, balls and capsules: closer than Drake."""
+    rng = np.random.default_rng(10)
+    shapes, _ = placed(solids)
+    some = [s for s, kind in enumerate(shapes.kind) if kind in (POINT, SEGMENT, BOX, HULL)]
+    cores = [core_of(solid) for solid in solids]
+    pairs = rng.choice(some, (300, 2))
+    X_WA, X_WB = some_poses(rng, 300, 0.25), some_poses(rng, 300, 0.25)
+    true = np.empty(300)
+    for i, (a, b) in enumerate(pairs):
+        A, B = (
+            corners_of(cores[s]) @ X[i, :3, :3].T + X[i, :3, 3] for s, X in ((a, X_WA), (b, X_WB))
+        )
+        true[i] = distance_by_weights(A, B) - cores[a].round - cores[b].round
+    lower, upper = bounds_on_distance(shapes, pairs, X_WA, X_WB, 1e3, np.maximum(true, 0.0))
+    apart = true > CLOSE
+    assert 0.3 < apart.mean() < 0.95
+    assert (lower <= true + 1e-8)[apart].all()
+    assert (upper >= true - 1e-8)[apart].all()
+    assert (upper - lower)[apart].max() < 5.0 * CLOSE
+
+
+def distance_by_weights(A: np.ndarray, B: np.ndarray) -> float:
+    """Distance in m of the hulls of points (a, 3) and (b, 3)."""
+    heavy = 1e4
+    M = np.zeros((5, len(A) + len(B)))
+    M[:3], M[3, : len(A)], M[4, len(A) :] = np.vstack([A, -B]).T, heavy, heavy
+    weights, _ = nnls(M, np.array([0.0, 0.0, 0.0, heavy, heavy]))
+    a, b = weights[: len(A)], weights[len(A) :]
+    return float(np.linalg.norm(a / a.sum() @ A - b / b.sum() @ B))
 
 
 def test_what_is_known_early_is_true_as_well(solids: list[Shape]) -> None:
@@ -147,10 +193,10 @@ def test_what_is_known_early_is_true_as_well(solids: list[Shape]) -> None:
         needed = least + rng.choice([2e-5, 1e-3, 0.05, 0.3], N)
         lower, upper = bounds_on_distance(shapes, pairs, *frames, needed, least)
         assert (lower <= true + CLOSE).all()
-        assert (upper >= true - CLOSE)[true > -BALLS].all()
-        assert (lower > needed)[true > needed + CLOSE].all()
-        assert (upper < least - 1e-5)[true < least - 1e-5 - CLOSE].all()
-        between = (true > least + 1e-5 + CLOSE) & (true < needed - CLOSE)
+        assert (upper >= true - DRAKES)[true > -BALLS].all()
+        assert (lower > needed)[true > needed + DRAKES].all()
+        assert (upper < least - 1e-5)[true < least - DRAKES].all()
+        between = (true > least + DRAKES) & (true < needed - DRAKES)
         assert ((lower > least + 1e-5) & (upper < needed))[between].all()
 
 
