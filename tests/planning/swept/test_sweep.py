@@ -152,7 +152,7 @@ def wood(tmp_path_factory: pytest.TempPathFactory) -> SweptChecker:
     rng = np.random.default_rng(4)
     trees = []
     for i in range(14):
-        x, y = (0.35 + 0.75 * rng.random()) * np.array([np.cos(i * 0.45), np.sin(i * 0.45)])
+        x, y = (0.3 + 0.42 * rng.random()) * np.array([np.cos(i * 0.45), np.sin(i * 0.45)])
         solid = SphereShape(0.01) if i % 2 else BoxShape((0.02, 0.01, 0.3))
         trees.append(ObstacleConfig(f"tree {i}", PlacedShape(solid, (x, y, 0.5), (0, 0, i))))
     rod = "<capsule><radius>0.015</radius><length>0.2</length></capsule>"
@@ -165,7 +165,7 @@ def some_paths(rng: np.random.Generator, N: int) -> list[np.ndarray]:
     """Paths (m, 3) of a few points, long steps and short ones."""
     paths = []
     for _ in range(N):
-        m, size = rng.integers(2, 12), rng.choice([0.02, 0.06, 0.3])
+        m, size = rng.integers(2, 12), rng.choice([0.02, 0.1, 0.3])
         q = rng.uniform(-2.2, 2.2, 3) + np.cumsum(rng.normal(size=(m, 3)) * size, axis=0)
         paths.append(np.clip(q, -2.5, 2.5))
     return paths
