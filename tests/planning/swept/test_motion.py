@@ -11,8 +11,10 @@ from drake_screw.planning.compiled.trace import dense_output
 from drake_screw.planning.swept import motion, sweep
 from tests.planning.compiled_arms import random_chain
 
-place_arm, place_balls = motion.place_arm.py_func, motion.place_balls.py_func
-as_polynomial = sweep.as_polynomial.py_func
+place_arm, place_balls, as_polynomial = (
+    getattr(function, "py_func", function)
+    for function in (motion.place_arm, motion.place_balls, sweep.as_polynomial)
+)
 
 
 class Shaken:
