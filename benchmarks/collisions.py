@@ -1,73 +1,248 @@
-"""Coverage of finished runs without and with collision checking, and what the checking costs.
+"""What looking for collisions along plans costs, and whether it overlooks any.
 
-Example:  python benchmarks/collisions.py runs/pouring/TIME runs/scooping/TIME --figure coverage.png
+    python benchmarks/collisions.py [--demonstrations 'DIR/{task}'] [--json FILE]
+
+plans uniform instances of the shipped scenarios with all demonstrations, simulated ones or those of
+a library, one plan for every pair (symmetries are left out), and prints plans per second within the
+joint limits alone, with collisions looked at all along them, and with Drake's own checker asked
+every 10 mm of travel; with Pinocchio and Coal asked as often, if they are installed. With
+
+    --agreement N   N plans a task that keep the limits are also looked at by Drake every 2 mm of
+                    travel (minutes for some thousand): collisions that only Drake finds, and
+                    those that it does not find
+    --meshes        all the arm's collision shapes are also given as meshes of 1,000 triangles
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
+from joint_paths import Noted, Spacing
+from mesh_arm import mesh_arm
+from task import TASKS, Task, load_task
 
-from drake_screw.runs.run import open_run
-from drake_screw.tasks import draw_in_all
-from drake_screw.visualization.palette import failure_color, ink_on
+from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.swap_model import swap_model
+from drake_screw.planning import BatchPlanner
+from drake_screw.robot import Workcell
+from drake_screw.scenario.loader import load_scenario
+from drake_screw.typing import Array
 
-ROUND = 2_000_000
-"""The round whose instances are planned. No run gets that far, so they are fresh."""
+APART, CLOSE = 10e-3, 2e-3
+"""m, of travel between configurations that Drake is asked about."""
+
+BATCH = 512
+"""Instances at a time whose paths are noted."""
 
 
-def measure(run: Path, per_region: int) -> tuple[str, list[np.ndarray], np.ndarray, list[float]]:
-    """Name, failure rates (K,) without and with collisions, bounds (K, 2, 2), instances/s."""
-    opened = open_run(run)
-    setup, demonstrations = opened.setup, opened.demonstrations
-    regions, start = setup.regions, setup.workcell.start
-    places, _ = draw_in_all(regions, per_region, seed=setup.scenario.seed, round=ROUND)
-    X_WO = setup.area.X_WO(places)
-    rates, speeds = [], []
-    for planner in (setup.batch_planner, setup.careful_planner):
-        planner.any_success(demonstrations, X_WO[:2], start)
+def best_time(call: Callable[[], Any], repeats: int) -> float:
+    """Seconds that the quickest of some calls takes."""
+    times = []
+    for _ in range(repeats):
         began = time.perf_counter()
-        outcomes = planner.any_success(demonstrations, X_WO, start)
-        speeds.append(len(places) / (time.perf_counter() - began))
-        rates.append(1.0 - outcomes.any_success.reshape(regions.K, per_region).mean(axis=1))
-    lower, upper = regions.bounds(np.arange(regions.K))
-    title = f"{setup.scenario.name}, {len(demonstrations)} demonstrations"
-    return title, rates, np.stack([lower[:, 0, :2], upper[:, 0, :2]], axis=1), speeds
+        call()
+        times.append(time.perf_counter() - began)
+    return min(times)
+
+
+def speed(task: Task, workcell: Workcell, X_WO: Array, arguments: argparse.Namespace) -> dict:
+    """Plans per second with all threads: within limits, and with collisions looked at."""
+    plans, given = len(X_WO) * len(task.demonstrations), (task.demonstrations, X_WO, task.q_start)
+    batch, checker = BatchPlanner(task.arm.screw_chain()), Noted(workcell, keep=False)
+    checked = batch.checked(checker)
+    for planner in (batch, checked):
+        planner.all_outcomes(task.demonstrations, X_WO[:2], task.q_start)
+    seconds = {
+        name: best_time(lambda planner=planner: planner.all_outcomes(*given), arguments.repeats)
+        for name, planner in (("checked", checked), ("limits_only", batch))
+    }
+    checker.paths.clear()
+    checker.in_doubt.clear()
+    outcomes = checked.all_outcomes(*given)
+    within = sum(checker.paths)
+    return {
+        "plans": plans,
+        "demonstrations": len(task.demonstrations),
+        "within_limits": within,
+        "free": int(outcomes.success.sum()),
+        "plans_per_second": {name: plans / spent for name, spent in seconds.items()},
+        "checks_per_second": within / max(seconds["checked"] - seconds["limits_only"], 1e-9),
+        "questions_per_checked_plan": sum(checker.in_doubt) / max(within, 1),
+        "settled_by_bounds": 1.0 - len(checker.in_doubt) / max(within, 1),
+    }
+
+
+def asked_all_along(
+    task: Task, workcell: Workcell, X_WO: Array, asked: Callable[[Array, Array], bool]
+) -> float:
+    """Plans per second where another checker is asked every 10 mm; planning included.
+
+    Args:
+        asked: whether anything touches at one of configurations (m, n) among objects (k, 4, 4).
+    """
+    began = time.perf_counter()
+    plans = len(X_WO) * len(task.demonstrations)
+    for q, X in paths_within_limits(task, workcell, X_WO, APART):
+        asked(q, X)
+    return plans / (time.perf_counter() - began)
+
+
+def paths_within_limits(task: Task, workcell: Workcell, X_WO: Array, spacing: float):  # type: ignore[no-untyped-def]
+    """Points (m, n) and objects (k, 4, 4) of each plan that keeps the limits."""
+    checker = Noted(workcell)
+    points = Spacing(checker, spacing)
+    planner = BatchPlanner(task.arm.screw_chain()).checked(checker)
+    planner.all_outcomes(task.demonstrations, X_WO, task.q_start)
+    for steps, first, objects, _ in checker.noted:
+        for i, X in enumerate(objects):
+            yield points(steps[first[i] : first[i + 1]]), X
+
+
+def agreement(task: Task, workcell: Workcell, count: int, seed: int) -> dict[str, Any]:
+    """Verdicts on plans that keep the limits, beside Drake every 2 mm of travel.
+
+    Of a plan that touches something Drake is asked at the place first; only where it does not
+    agree, all along.
+    """
+    checker, rng = Noted(workcell), np.random.default_rng(seed)
+    points = Spacing(checker, CLOSE)
+    planner = BatchPlanner(task.arm.screw_chain()).checked(checker)
+    said = {"plans": 0, "touch": 0, "configurations": 0}
+    missed: list[dict[str, Any]] = []
+    unconfirmed: list[dict[str, Any]] = []
+    while said["plans"] < count:
+        checker.noted.clear()
+        X_WO = task.instances(BATCH, rng)
+        planner.all_outcomes(task.demonstrations, X_WO, task.q_start)
+        for steps, first, objects, found in checker.noted:
+            kept = rng.permutation(len(objects))[: max(1, len(objects) // 8)]
+            for i in kept[: count - said["plans"]]:
+                said["plans"] += 1
+                said["touch"] += int(found.touches[i])
+                X, own = objects[i], steps[first[i] : first[i + 1]]
+                if found.touches[i] and workcell.collides(found.q[i : i + 1], X)[0]:
+                    continue
+                q = points(own)
+                said["configurations"] += len(q)
+                hits = np.flatnonzero(workcell.collides(q, X))
+                if found.touches[i] and len(hits) == 0:
+                    unconfirmed.append(depth(workcell, found.q[i], X))
+                elif not found.touches[i] and len(hits):
+                    worst = min((depth(workcell, q[k], X) for k in hits), key=lambda d: d["m"])
+                    missed.append(worst | {"configurations": len(hits)})
+    return {**said, "missed": missed, "unconfirmed": unconfirmed}
+
+
+def depth(workcell: Workcell, q: Array, X_WO: Array) -> dict[str, Any]:
+    """The least signed distance in m at q (n,) by Drake, and the bodies it is of."""
+    near = workcell.checker.CalcRobotClearance(workcell.positions(q, X_WO), 0.01)
+    distances = np.asarray(near.distances())
+    if len(distances) == 0:
+        return {"m": float("nan"), "bodies": []}
+    k = int(distances.argmin())
+    bodies = near.robot_indices()[k], near.other_indices()[k]
+    names = [workcell.plant.get_body(body).name() for body in bodies]
+    return {"m": float(distances[k]), "bodies": names}
+
+
+def measure(name: str, arguments: argparse.Namespace) -> dict[str, Any]:
+    """All that is asked about one task."""
+    task = load_task(name, arguments.demonstrations, None, arguments.limit)
+    setup = Setup(load_scenario(name))
+    workcell, rng = setup.workcell, np.random.default_rng(arguments.seed)
+    X_WO = task.instances(arguments.instances, rng)
+    result = speed(task, workcell, X_WO, arguments)
+    some = X_WO[: arguments.slow]
+    per_second = result["plans_per_second"]
+    per_second["drake"] = asked_all_along(
+        task, workcell, some, lambda q, X: bool(workcell.collides(q, X).any())
+    )
+    try:
+        from coal_arm import CoalArm
+
+        coal = CoalArm(workcell)
+        per_second["coal"] = asked_all_along(task, workcell, some, coal.touches)
+    except ImportError:
+        print("Pinocchio is not installed (pip install 'drake-screw[benchmark]'): left out")
+    report(name, result)
+    if arguments.meshes:
+        with tempfile.TemporaryDirectory() as folder:
+            model = mesh_arm(workcell.model_file, Path(folder))
+            meshes = Setup(swap_model(load_scenario(name), model)).workcell
+            result["meshes"] = speed(task, meshes, X_WO, arguments)
+        report(f"{name}, the arm of meshes", result["meshes"])
+        for what in ("plans_per_second", "checks_per_second"):
+            ratio = ratio_of(result["meshes"][what], result[what])
+            print(f"  {what.replace('_', ' ')}, meshes to primitives: {ratio:.2f}")
+    if arguments.agreement:
+        result["agreement"] = found = agreement(
+            task, workcell, arguments.agreement, arguments.seed + 1
+        )
+        print(
+            f"  {found['plans']:,} plans beside Drake every {1e3 * CLOSE:g} mm: "
+            f"{found['touch']:,} touch something, {len(found['missed'])} that Drake finds are "
+            f"missed, {len(found['unconfirmed'])} it does not find "
+            f"({found['configurations']:,} configurations)"
+        )
+        for kind in ("missed", "unconfirmed"):
+            for one in found[kind]:
+                print(f"    {kind}: {1e3 * one['m']:.4f} mm, {' and '.join(one['bodies'])}")
+    return result
+
+
+def ratio_of(ours: Any, theirs: Any) -> float:
+    """Of two numbers, or of the numbers with collisions looked at."""
+    return ours["checked"] / theirs["checked"] if isinstance(ours, dict) else ours / theirs
+
+
+def report(name: str, result: dict[str, Any]) -> None:
+    """Print a task's speeds."""
+    print(
+        f"\n{name}: {result['plans']:,} plans, {result['demonstrations']} demonstrations, "
+        f"{result['within_limits']:,} within limits, {result['free']:,} of them free"
+    )
+    rows = {
+        "checked": "collisions looked at",
+        "limits_only": "joint limits only",
+        "drake": f"Drake every {1e3 * APART:g} mm",
+        "coal": f"Pinocchio and Coal every {1e3 * APART:g} mm",
+    }
+    for key, title in rows.items():
+        if key in result["plans_per_second"]:
+            print(f"  {title:32}{result['plans_per_second'][key]:12,.0f} plans/s")
+    print(f"  {'checks alone':32}{result['checks_per_second']:12,.0f} plans/s")
+    print(f"  questions to Drake a checked plan {result['questions_per_checked_plan']:.4f}")
+    print(f"  settled by bounds {100.0 * result['settled_by_bounds']:.3f} % of the checked plans")
 
 
 def main() -> None:
-    """Measure, print a table, draw a figure."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("runs", nargs="+", type=Path, help="directories of finished runs")
-    parser.add_argument("--per-region", type=int, default=40)
-    parser.add_argument("--figure", type=Path, help="PNG to write")
-    args = parser.parse_args()
-    figure = Figure(figsize=(11, 2.7 * len(args.runs)), layout="constrained")
-    axes = figure.subplots(len(args.runs), 2, squeeze=False)
-    print(f"{'run':34} {'checked':>14} {'coverage':>9} {'worst':>7} {'instances/s':>12}")
-    for row, run in zip(axes, args.runs, strict=True):
-        title, rates, bounds, speeds = measure(run, args.per_region)
-        kinds = ("joint limits", "and collisions")
-        for ax, kind, rate, speed in zip(row, kinds, rates, speeds, strict=True):
-            print(f"{title:34} {kind:>14} {1 - rate.mean():9.3f} {rate.max():7.3f} {speed:12,.0f}")
-            for j, value in enumerate(rate):
-                (x0, y0), (x1, y1) = bounds[j]
-                color = failure_color(value)
-                ax.fill([y0, y1, y1, y0], [x0, x0, x1, x1], color=tuple(color))
-                middle = (y0 + y1) / 2, (x0 + x1) / 2
-                ax.text(*middle, f"{value:.2f}", ha="center", va="center", color=ink_on(color))
-            ax.invert_xaxis()
-            ax.set_aspect("equal")
-            ax.set_title(f"{title}: {kind}", fontsize=10)
-            ax.set_xlabel("y in m", fontsize=8)
-            ax.set_ylabel("x in m", fontsize=8)
-    if args.figure:
-        figure.suptitle(f"Failure rates by region, {args.per_region} fresh instances each")
-        figure.savefig(args.figure, dpi=100)
+    """Measure, print a table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--tasks", nargs="+", default=TASKS, help="shipped scenarios")
+    parser.add_argument("--demonstrations", metavar="DIR", help="a library; {task} is replaced")
+    parser.add_argument("--limit", type=int, help="most demonstrations of a task")
+    parser.add_argument("--instances", type=int, default=2000)
+    parser.add_argument("--slow", type=int, default=20, help="instances for the other checkers")
+    parser.add_argument("--repeats", type=int, default=3, help="the quickest counts")
+    parser.add_argument("--agreement", type=int, metavar="N", help="plans to ask Drake about")
+    parser.add_argument("--meshes", action="store_true", help="the arm's shapes as meshes, too")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--json", type=Path, metavar="FILE", help="also write the results there")
+    arguments = parser.parse_args()
+    results = {}
+    for name in arguments.tasks:
+        results[name] = measure(name, arguments)
+        if arguments.json:
+            arguments.json.write_text(json.dumps(results, indent=1) + "\n")
 
 
 if __name__ == "__main__":

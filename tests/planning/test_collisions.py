@@ -1,21 +1,21 @@
-"""Collisions along plans: paths in batches, bounds on clearance, and the planner that uses them."""
+"""Collisions along plans: paths in batches, their first touches, and the planner that uses them."""
 
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 import pytest
-from pydrake.geometry import Box, Capsule, Cylinder, Ellipsoid, Sphere
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import BatchPlanner, Cause, Plan, ReferencePlanner, Symmetries
-from drake_screw.planning.clearance import bubbles_of, covering, half_extents
 from drake_screw.planning.collisions import CollisionFreePlanner
-from drake_screw.planning.plan_checker import SPACING, PlanChecker
+from drake_screw.planning.plan_checker import PlanChecker
 from drake_screw.robot import ObjectConfig, RobotConfig, TableConfig, build_workcell
-from drake_screw.screws import exp, pose, rotation_angle, sclerp, translation_distance
+from drake_screw.screws import exp, inverse, pose, rotation_angle, sclerp, translation_distance
 from drake_screw.tasks import Symmetry
+from tests.robot.small_arms import PLANAR, sdf
 
 START = (1.0434904, -0.2201262, -0.7470486, 1.5243934, 1.8818109, -0.9687089, -0.4908739)
 JOINTS = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
@@ -95,58 +95,22 @@ def test_no_instances_make_no_paths(checker, batch) -> None:
     assert len(found.collides) == 0
 
 
-@pytest.mark.parametrize(
-    "shape",
-    [
-        Sphere(0.1),
-        Box(0.2, 0.05, 0.6),
-        Cylinder(0.05, 0.7),
-        Cylinder(0.3, 0.02),
-        Capsule(0.04, 0.5),
-        Capsule(0.1, 0.001),
-        Ellipsoid(0.1, 0.2, 0.05),
-    ],
-    ids=lambda shape: type(shape).__name__,
-)
-def test_spheres_cover_shapes(shape, rng) -> None:
-    half = half_extents(shape)
-    p = rng.uniform(-half, half, (20_000, 3))
-    match shape:
-        case Sphere() | Ellipsoid():
-            inside = ((p / half) ** 2).sum(axis=1) <= 1.0
-        case Cylinder():
-            inside = np.hypot(p[:, 0], p[:, 1]) <= shape.radius()
-        case Capsule():
-            z = np.clip(p[:, 2], -shape.length() / 2, shape.length() / 2)
-            inside = np.linalg.norm(p - np.outer(z, [0, 0, 1]), axis=1) <= shape.radius()
-        case _:
-            inside = np.ones(len(p), dtype=bool)
-    centers, radius = covering(shape)
-    away = np.linalg.norm(p[inside, None] - centers, axis=-1).min(axis=1)
-    assert away.max() <= radius
-    assert radius <= max(1.3 * np.linalg.norm(np.sort(half)[:2]), 1.01 * half.max())
-
-
-def test_bounds_never_clear_a_collision(workcell, rng) -> None:
-    """Whatever Drake finds colliding, the bounds do not call free, and they call much free."""
-    bubbles, arm = bubbles_of(workcell), workcell.arm
+def test_configurations_touch_what_drake_says_they_do(checker, workcell, rng) -> None:
+    """One point is a path, too; of most nothing has to be asked."""
+    arm, before = workcell.arm, checker.asked
     q = rng.uniform(arm.lower, arm.upper, (600, arm.n))
-    X_WO = np.repeat(some_places(1), 600, axis=0)
-    distance, _ = bubbles(q, X_WO)
-    hit = workcell.collides(q, X_WO)
-    cleared = distance.min(axis=1) > 0.0
-    assert hit.any()
-    assert not (hit & cleared).any()
-    assert cleared.sum() > 0.5 * (~hit).sum()
+    X_WO = some_places(1)[0]
+    free = [checker.free(one[None], X_WO) for one in q]
+    assert checker.asked - before < 6
+    np.testing.assert_array_equal(free, ~workcell.collides(q, X_WO))
+    assert 0.05 < np.mean(free) < 0.95
 
 
-def test_bounds_follow_the_bowl(workcell) -> None:
-    bubbles = bubbles_of(workcell)
+def test_answers_follow_the_bowl(checker, workcell) -> None:
     q = np.array(START)[None]
     p_WE = workcell.arm.pose(START)[:3, 3]
-    near, _ = bubbles(q, placed(p_WE))
-    far, _ = bubbles(q, placed(AT + 0.5 * np.eye(3)[1]))
-    assert near.min() < 0.0 < far.min()
+    assert not checker.free(q, placed(p_WE)[0])
+    assert checker.free(q, placed(AT + 0.5 * np.eye(3)[1])[0])
 
 
 def test_a_free_path_is_free(checker, batch) -> None:
@@ -193,13 +157,10 @@ def test_plans_of_any_length_are_checked_each_by_itself(checker, batch) -> None:
         np.testing.assert_array_equal(alone.q[0], found.q[i])
 
 
-def test_much_of_a_path_is_cleared_without_asking_drake(workcell, batch) -> None:
+def test_free_paths_are_cleared_without_asking_drake(workcell, batch) -> None:
     checker, X_WO = PlanChecker(workcell), some_places(6)
-    plans = plans_of(batch, ABOVE, X_WO)
-    checker.first_collisions(plans, X_WO)
-    X_WE = [workcell.arm.pose(plan.q) for plan in plans]
-    length = sum(translation_distance(X[:-1], X[1:]).sum() for X in X_WE)
-    assert checker.asked < 0.75 * length / SPACING
+    assert not checker.first_collisions(plans_of(batch, ABOVE, X_WO), X_WO).collides.any()
+    assert checker.asked == 0
 
 
 def test_a_collision_is_explained_by_segment_and_bodies(checker, batch) -> None:
@@ -230,18 +191,15 @@ def test_colliding_successes_become_collisions(planners) -> None:
     assert ((after.fraction[:, 1] > 0.0) & (after.fraction[:, 1] < 1.0)).all()
 
 
-def test_outcomes_that_are_checked_stay_as_they_were(planners, monkeypatch) -> None:
+def test_the_planner_and_the_checker_of_plans_agree(planners) -> None:
+    """On the first touch, too: the planner follows its own steps, the other the plan's points."""
     batch, planner = planners
-    X_WO = some_places(5)
-    given = batch.all_outcomes([ABOVE, THROUGH], X_WO, START)
-    for values in (given.cause, given.segment, given.joint, given.fraction):
-        values.flags.writeable = False
-    monkeypatch.setattr(batch, "all_outcomes", lambda *_: given)
-    monkeypatch.setattr(batch, "any_success", lambda *_: given)
-    for plan in (planner.all_outcomes, planner.any_success):
-        after = plan([ABOVE, THROUGH], X_WO, START)
-        np.testing.assert_array_equal(after.success, [[True, False]] * 5)
-    assert given.success.all()
+    X_WO = some_places(20, seed=3)
+    found = planner.all_outcomes([THROUGH], X_WO, START)[:, 0]
+    hits = planner.checker.first_collisions(plans_of(batch, THROUGH, X_WO), X_WO)
+    np.testing.assert_array_equal(hits.collides, ~found.success)
+    np.testing.assert_array_equal(hits.segment, found.segment)
+    np.testing.assert_allclose(hits.fraction, found.fraction, atol=0.05)
 
 
 def test_any_success_goes_on_to_the_next_demonstration(planners) -> None:
@@ -305,3 +263,31 @@ def test_a_turn_that_touches_nothing_is_found_after_those_that_do(workcell) -> N
     assert {(True, True), (True, False), (False, True)} <= seen
     some = planner.any_success(lessons, X_WO, START)
     np.testing.assert_array_equal(some.any_success, found.any_success)
+
+
+def test_an_arm_of_three_joints_is_checked_for_collisions(tmp_path: Path) -> None:
+    """Once with the pole out of the way, once where the arm's last link comes through."""
+    ball = "<sphere><radius>0.03</radius></sphere>"
+    file = tmp_path / "planar.sdf"
+    file.write_text(sdf(PLANAR, hand="0.1 0 0 0 0 0", shapes={"p2_link": ball, "p3_link": ball}))
+    bent = np.array([0.4, 0.9, 0.4])
+    robot = RobotConfig(str(file), tuple(joint.name for joint in PLANAR), "hand", tuple(bent))
+    workcell = build_workcell(robot, objects=[ObjectConfig("pole", 0.02, 0.6)])
+    X = workcell.arm.pose(bent + np.cumsum([[0.2, -0.3, 0.2], [-0.5, 0.3, 0.2]], axis=0))
+    batch = BatchPlanner(workcell.arm.screw_chain())
+    planner = CollisionFreePlanner(batch, workcell)
+
+    def lesson(X_WO: np.ndarray) -> Demonstration:
+        X_OE = inverse(X_WO[0]) @ X
+        return Demonstration("flat", X_OE, np.zeros(2, int), X_WO, X, np.arange(2))
+
+    away = placed([-1.0, -1.0, 0.3])
+    within = placed([*(X[1, :2, 3] - 0.1 * X[1, :2, 0]), 0.3])
+    for X_WO, code in ((away, "0:0"), (within, "2:c")):
+        lessons = [lesson(X_WO[0])]
+        assert batch.all_outcomes(lessons, X_WO, bent).codes() == "0:0"
+        for answer in (planner.all_outcomes, planner.any_success):
+            assert answer(lessons, X_WO, bent).codes() == code
+    hit = planner.checker.explain(batch.plan(lesson(within[0]), within[0], bent), within[0])
+    assert hit is not None
+    assert ("p3_link", "pole") in hit.bodies
