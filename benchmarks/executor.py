@@ -139,7 +139,7 @@ def main() -> None:
     solved = setup.planner.all_outcomes([demonstration], X_WO, start).success[:, 0]
     X_WO = X_WO[solved][: arguments.plans]
     checker = PlanChecker(setup.workcell)
-    checker.bubbles(start[None], X_WO[:1])
+    checker.free(np.stack([start, start]), X_WO[0])  # compiles what is not compiled yet
     count = len(X_WO)
     which = np.zeros(count, dtype=int)
     paths_s, plans = seconds(lambda: setup.batch_planner.plans([demonstration], X_WO, start, which))
