@@ -5,7 +5,7 @@
 plans uniform instances of the shipped scenarios with all demonstrations, simulated ones or those of
 a library, one plan for every pair (symmetries are left out), and prints plans per second within the
 joint limits alone, with collisions looked at all along them, and with Drake's own checker asked
-every 10 mm of travel; with Pinocchio and Coal asked as often, if they are installed. With
+every 10 mm of travel. With
 
     --agreement N   N plans a task that keep the limits are also looked at by Drake every 2 mm of
                     travel (minutes for some thousand): collisions that only Drake finds, and
@@ -80,29 +80,31 @@ def speed(task: Task, workcell: Workcell, X_WO: Array, arguments: argparse.Names
 
 
 def asked_all_along(
-    task: Task, workcell: Workcell, X_WO: Array, asked: Callable[[Array, Array], bool]
+    task: Task,
+    workcell: Workcell,
+    X_WO: Array,
+    planning: float,
+    asked: Callable[[Array, Array], object],
 ) -> float:
-    """Plans per second where another checker is asked every 10 mm; planning included.
+    """Plans per second where another checker is asked every 10 mm.
 
     Args:
+        planning: plans per second within limits; their time counts, that of measuring travel not.
         asked: whether anything touches at one of configurations (m, n) among objects (k, 4, 4).
     """
-    began = time.perf_counter()
-    plans = len(X_WO) * len(task.demonstrations)
-    for q, X in paths_within_limits(task, workcell, X_WO, APART):
-        asked(q, X)
-    return plans / (time.perf_counter() - began)
-
-
-def paths_within_limits(task: Task, workcell: Workcell, X_WO: Array, spacing: float):  # type: ignore[no-untyped-def]
-    """Points (m, n) and objects (k, 4, 4) of each plan that keeps the limits."""
     checker = Noted(workcell)
-    points = Spacing(checker, spacing)
+    points = Spacing(checker, APART)
     planner = BatchPlanner(task.arm.screw_chain()).checked(checker)
     planner.all_outcomes(task.demonstrations, X_WO, task.q_start)
-    for steps, first, objects, _ in checker.noted:
-        for i, X in enumerate(objects):
-            yield points(steps[first[i] : first[i + 1]]), X
+    paths = [
+        (points(steps[first[i] : first[i + 1]]), X)
+        for steps, first, objects, _ in checker.noted
+        for i, X in enumerate(objects)
+    ]
+    began, plans = time.perf_counter(), len(X_WO) * len(task.demonstrations)
+    for q, X in paths:
+        asked(q, X)
+    return plans / (time.perf_counter() - began + plans / planning)
 
 
 def agreement(task: Task, workcell: Workcell, count: int, seed: int) -> dict[str, Any]:
@@ -162,15 +164,8 @@ def measure(name: str, arguments: argparse.Namespace) -> dict[str, Any]:
     some = X_WO[: arguments.slow]
     per_second = result["plans_per_second"]
     per_second["drake"] = asked_all_along(
-        task, workcell, some, lambda q, X: bool(workcell.collides(q, X).any())
+        task, workcell, some, per_second["limits_only"], workcell.collides
     )
-    try:
-        from coal_arm import CoalArm
-
-        coal = CoalArm(workcell)
-        per_second["coal"] = asked_all_along(task, workcell, some, coal.touches)
-    except ImportError:
-        print("Pinocchio is not installed (pip install 'drake-screw[benchmark]'): left out")
     report(name, result)
     if arguments.meshes:
         with tempfile.TemporaryDirectory() as folder:
@@ -212,7 +207,6 @@ def report(name: str, result: dict[str, Any]) -> None:
         "checked": "collisions looked at",
         "limits_only": "joint limits only",
         "drake": f"Drake every {1e3 * APART:g} mm",
-        "coal": f"Pinocchio and Coal every {1e3 * APART:g} mm",
     }
     for key, title in rows.items():
         if key in result["plans_per_second"]:

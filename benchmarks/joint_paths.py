@@ -11,8 +11,9 @@ from drake_screw.planning.compiled.trace import dense_output
 from drake_screw.planning.swept import SweptChecker, Touched
 from drake_screw.typing import Array
 
-PART = 2e-3
-"""rad, summed up over the joints, of a path's parts of which the travel is measured."""
+PARTS = 2.0
+"""Into which a motion of the joints by the spacing, in rad summed up, is divided; of each part the
+travel is measured."""
 
 
 class Noted(SweptChecker):
@@ -57,7 +58,7 @@ class Spacing:
     def __call__(self, steps: Array) -> Array:
         """Points (m, n) of the steps (t, 5, n) of a path, its ends among them."""
         motion = np.abs(steps[:, 1] - steps[:, 0]).sum(axis=1) + np.abs(steps[:, 4]).sum(axis=1)
-        parts = 2 + (motion / PART).astype(np.int64)
+        parts = 2 + (PARTS * motion / self.spacing).astype(np.int64)
         step = np.repeat(np.arange(len(steps)), parts)
         u = np.concatenate([np.linspace(0.0, 1.0, count) for count in parts])
         q = np.clip(dense_output(steps[step], u), *self.checker.cell.limits)
@@ -71,9 +72,8 @@ class Spacing:
         cell, chain = self.checker.cell, self.checker.workcell.arm.screw_chain()
         E = chain.motions(q)
         longest = np.zeros(len(q) - 1)
-        ways = np.concatenate([np.eye(3), -np.eye(3)])
         for joint, reach, p in zip(cell.moved_joint, cell.moved_reach, cell.centers.T, strict=True):
-            points = p + reach * ways
-            at = np.einsum("tij,pj->tpi", E[joint, :, :3, :3], points) + E[joint, :, None, :3, 3]
+            points = p + reach * np.eye(3)
+            at = points @ E[joint, :, :3, :3].transpose(0, 2, 1) + E[joint, :, None, :3, 3]
             longest = np.maximum(longest, np.linalg.norm(np.diff(at, axis=0), axis=-1).max(axis=1))
         return longest

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -13,17 +14,17 @@ from drake_screw.typing import Array
 DRAKE = "drake.mit.edu"
 """The namespace of what SDF has from Drake."""
 
-POINTS = 502
-"""Of a mesh: a closed one of triangles has 2 (POINTS - 2) of these."""
+BULGE = 0.01
+"""Of a shape's size, by which flat faces bulge, so that all points of a mesh are corners."""
 
-EDGES = 16.0
-"""Norm whose unit ball stands for a box; its edges are round, and all its points corners."""
+ROUND = 1.005
+"""Of a circle's radius, at which corners stand that it lies within."""
 
 
 def mesh_arm(model: Path, folder: Path) -> Path:
     """Write a model (SDF) with a mesh of 1,000 triangles in place of every collision shape.
 
-    A mesh lies within the shape, and comes near it.
+    A shape lies within its mesh, which is larger by a hundredth at most.
     """
     ET.register_namespace("drake", DRAKE)
     tree = ET.parse(model)
@@ -43,33 +44,58 @@ def mesh_arm(model: Path, folder: Path) -> Path:
 
 
 def _points(shape: ET.Element) -> Array | None:
-    """Points (POINTS, 3) in m of a shape's surface; None of what is no primitive."""
+    """Points (p, 3) in m about a shape's surface; None of what is no primitive."""
 
     def number(name: str) -> float:
         return float(shape.findtext(name, ""))
 
-    i = np.arange(POINTS) + 0.5
-    z, turn = 1.0 - 2.0 * i / POINTS, np.pi * (1.0 + 5.0**0.5) * i
-    way = np.column_stack([np.cos(turn) * (1 - z * z) ** 0.5, np.sin(turn) * (1 - z * z) ** 0.5, z])
-    across = np.hypot(way[:, 0], way[:, 1])
     match shape.tag.removeprefix(f"{{{DRAKE}}}"):
         case "sphere":
-            return way * number("radius")
+            return _ball() * number("radius")
         case "box":
             size = np.array(shape.findtext("size", "").split(), dtype=float)
-            return way / np.linalg.norm(way, ord=EDGES, axis=1)[:, None] * size / 2.0
+            return _bulging(_cube()) * size / 2.0
         case "cylinder":
-            norm = (across**EDGES + abs(way[:, 2]) ** EDGES) ** (1.0 / EDGES)
-            radius = number("radius")
-            return way / norm[:, None] * [radius, radius, number("length") / 2.0]
+            radius = ROUND * number("radius")
+            return _bulging(_can()) * [radius, radius, number("length") / 2.0]
         case "capsule":
+            way = _ball()
             ends = np.sign(way[:, 2:]) * [0.0, 0.0, number("length") / 2.0]
             return way * number("radius") + ends
         case "ellipsoid":
             radii = np.array(shape.findtext("radii", "").split(), dtype=float)
-            return way * radii
+            return _ball() * radii
         case _:
             return None
+
+
+def _ball() -> Array:
+    """Points about a sphere of radius 1, evenly spread on a spiral."""
+    i = np.arange(502) + 0.5
+    z, turn = 1.0 - 2.0 * i / 502, np.pi * (1.0 + 5.0**0.5) * i
+    across = np.sqrt(1.0 - z * z)
+    return ROUND * np.column_stack([across * np.cos(turn), across * np.sin(turn), z])
+
+
+def _cube() -> Array:
+    """Points of the surface of a cube from -1 to 1."""
+    p = np.array(list(itertools.product(np.linspace(-1.0, 1.0, 10), repeat=3)))
+    return p[np.abs(p).max(axis=1) == 1.0]
+
+
+def _can() -> Array:
+    """Points of the surface of a cylinder of radius 1 from -1 to 1."""
+    rings = [(1.0, z, 36) for z in np.linspace(-1.0, 1.0, 11)]
+    rings += [(r, z, n) for z in (-1.0, 1.0) for r, n in ((0.35, 12), (0.7, 24))]
+    turns = [(r, z, 2.0 * np.pi * np.arange(n) / n) for r, z, n in rings]
+    return np.concatenate(
+        [np.column_stack([r * np.cos(a), r * np.sin(a), np.full(len(a), z)]) for r, z, a in turns]
+    )
+
+
+def _bulging(p: Array) -> Array:
+    """Points farther out, the more the nearer they are to the middle of a face."""
+    return p * (1.0 + BULGE * (3.0 - (p * p).sum(axis=1, keepdims=True)) / 2.0)
 
 
 def _write(file: Path, points: Array) -> None:

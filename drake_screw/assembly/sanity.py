@@ -82,7 +82,8 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     """Check that no obstacle touches the robot at the start, nor anything what the robot holds.
 
     Where collisions are looked at, neither may the robot touch itself or the table there, since no
-    plan could succeed. Objects are left out: where they stand is not known yet.
+    plan could succeed, and a clearance has to be kept. Objects are left out: where they stand is
+    not known yet.
 
     Raises:
         ScenarioError: something does.
@@ -118,6 +119,16 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
             f"robot.start: {both} at the start, so that no plan can succeed",
             remedy="Change robot.start, or mend the collision shapes of the robot's model; "
             "planner.collision: false leaves collisions out.",
+            file=scenario.source,
+        )
+    kept = scenario.planner.clearance
+    near = workcell.colliding_bodies(workcell.start, pose(np.eye(3), away), kept) if kept else ()
+    if near:
+        both = " and ".join(f"'{a}' and '{b}'" for a, b in near)
+        raise ScenarioError(
+            f"planner.clearance: {both} are nearer than {kept:g} m at the start, so that no plan "
+            "can succeed",
+            remedy="Choose a smaller clearance, or change robot.start.",
             file=scenario.source,
         )
 

@@ -19,11 +19,14 @@ EARLIER = SimpleNamespace(samples=48, attempted=False)
 ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 
 
-def scenario_of(collision=False, objects=(), tool=None, approach="screw"):
+def scenario_of(collision=False, objects=(), tool=None, approach="screw", **kept):
     return SimpleNamespace(
         coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
         planner=SimpleNamespace(
-            collision=collision, approach=approach, turns=24, clearance=0.0, joint_margin=0.0
+            **{"clearance": 0.0, "joint_margin": 0.0} | kept,
+            collision=collision,
+            approach=approach,
+            turns=24,
         ),
         objects=objects,
         robot=SimpleNamespace(tool=tool),
@@ -80,6 +83,17 @@ def test_whether_collisions_count_is_said() -> None:
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario_of(collision=True))
     assert stated.collisions_checked
     assert "that touches nothing." in text
+
+
+def test_what_is_kept_is_said() -> None:
+    scenario = scenario_of(collision=True, clearance=0.02, joint_margin=0.1)
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
+    assert (stated.clearance, stated.joint_margin) == (0.02, 0.1)
+    assert (
+        "a plan at least 0.1 rad (m, where they slide) within the joint limits of the robot's "
+        "model along which the robot keeps 0.02 m from all else and itself." in text
+    )
+    assert "touches nothing" not in text
 
 
 def test_it_says_what_was_taken_for_granted() -> None:
