@@ -70,7 +70,7 @@ def test_the_best_plan_has_the_largest_margin_of_all_that_touch_nothing(
     assert best.margin == pytest.approx(least_margin(setup, best.plan.q))
     assert best.margins[best.tightest] == best.margin
     for a, b in itertools.pairwise(ranked):
-        assert (a.margin, -a.length) >= (b.margin, -b.length)
+        assert (a.margin, a.clearance, -a.length) >= (b.margin, b.clearance, -b.length)
 
 
 def test_it_is_a_motion_in_time_that_ends_on_the_last_guiding_pose(

@@ -26,7 +26,7 @@ FINEST = 1e-4
 """m, of travel to either side of a configuration: stretches as short as that are not halved. So
 much deeper than at the configurations looked at may shapes touch unnoticed."""
 
-PART = 0.4
+PART = 0.25
 """rad (or m), summed up over the joints: parts of a step in which to look at all pairs."""
 
 COARSE = 5e-3
