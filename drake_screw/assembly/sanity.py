@@ -46,7 +46,7 @@ def check_start(scenario: Scenario, arm: Arm) -> None:
         ScenarioError: it is not.
     """
     start, chain = np.array(scenario.robot.start, dtype=float), kept_within(scenario, arm)
-    margin = np.minimum(start - chain.lower, chain.upper - start)
+    margin = chain.margin(start)
     if (margin <= 0.0).any():
         i = int(np.argmin(margin))
         kept = scenario.planner.joint_margin

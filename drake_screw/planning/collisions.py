@@ -83,17 +83,6 @@ class CollisionFreePlanner:
                 outcomes, solved[i] = outcomes.replaced((i, d), found), True
         return outcomes
 
-    def variant_outcomes(
-        self,
-        demonstration: Demonstration,
-        X_WO: ArrayLike,
-        q_start: ArrayLike,
-        *,
-        others: bool = True,
-    ) -> Outcomes:
-        """As `BatchPlanner.variant_outcomes`; nothing is led around anything."""
-        return self.checked.variant_outcomes(demonstration, X_WO, q_start, others=others)
-
     def plans(
         self,
         demonstrations: Sequence[Demonstration],

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.planning.compiled import Check, Touches, Trace
 from drake_screw.planning.outcomes import Plan
-from drake_screw.planning.swept import SweptChecker, Touched, lines
+from drake_screw.planning.swept import SweptChecker, Touched, lines, straight_steps
 from drake_screw.robot import Workcell
 from drake_screw.typing import Array
 
@@ -76,15 +76,7 @@ class PlanChecker:
         if N == 0:
             none = np.zeros(0)
             return Collisions(none.astype(bool), none.astype(int), none, np.zeros((0, n)))
-        found = self._along([plan.q for plan in plans], np.asarray(X_WO, dtype=float))
-        segment, fraction = np.full(N, -1), np.ones(N)
-        for i in np.flatnonzero(found.touches).tolist():
-            plan, step = plans[i], int(found.step[i])
-            end = min(step + 1, len(plan.q) - 1)
-            began = plan.s[step] if plan.segment[step] == plan.segment[end] else 0.0
-            segment[i] = plan.segment[end]
-            fraction[i] = began + found.place[i] * (plan.s[end] - began)
-        return Collisions(found.touches, segment, fraction, found.q)
+        return _collisions(plans, self._along([p.q for p in plans], np.asarray(X_WO, dtype=float)))
 
     def explain(self, plan: Plan, X_WO: ArrayLike) -> Hit | None:
         """The first collision of a plan among objects X_WO (k, 4, 4), if there is one."""
@@ -92,7 +84,7 @@ class PlanChecker:
         touched = self._along([plan.q], X_WO[None])
         if not touched.touches[0]:
             return None
-        found, pair = self.first_collisions([plan], X_WO[None]), int(touched.pair[0])
+        found, pair = _collisions([plan], touched), int(touched.pair[0])
         bodies: tuple[tuple[str, str], ...] = ()
         if pair >= 0:
             bodies = (self.workcell.touching(pair),)
@@ -117,6 +109,18 @@ class PlanChecker:
         steps = [lines(q) for q in paths]
         first = np.cumsum([0, *map(len, steps)], dtype=np.int64)
         return self.swept.along(np.concatenate(steps), first, X_WO)
+
+
+def _collisions(plans: Sequence[Plan], found: Touched) -> Collisions:
+    """The first touches of plans, as places in their segments."""
+    segment, fraction = np.full(len(plans), -1), np.ones(len(plans))
+    for i in np.flatnonzero(found.touches).tolist():
+        plan, step = plans[i], int(found.step[i])
+        end = min(step + 1, len(plan.q) - 1)
+        began = plan.s[step] if plan.segment[step] == plan.segment[end] else 0.0
+        segment[i] = plan.segment[end]
+        fraction[i] = began + found.place[i] * (plan.s[end] - began)
+    return Collisions(found.touches, segment, fraction, found.q)
 
 
 def check_of(
@@ -145,9 +149,7 @@ def check_of(
             approach, kept = to_come & ends, ~to_come | ends
             q, s = q.copy(), s.copy()
             there = q[approach, 1]
-            q[approach] = 0.0
-            q[approach, 0], q[approach, 1] = q_start, there
-            q[approach, 2] = q[approach, 3] = there - q_start
+            q[approach] = straight_steps(np.broadcast_to(q_start, there.shape), there)
             s[approach] = 0.0, 1.0
             q, s, segment = q[kept], s[kept], segment[kept]
             first = np.concatenate([[0], np.cumsum(np.bincount(owner[kept], minlength=len(away)))])

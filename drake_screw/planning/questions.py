@@ -74,7 +74,7 @@ def nearest_first(demonstrations: Sequence[Demonstration], X_WO: Array) -> NDArr
 
 def failed_start(chain: ScrewChain, q_start: Array, shape: tuple[int, ...]) -> Outcomes | None:
     """Outcomes of a start (n,) that is not strictly inside the limits; None of one that is."""
-    margin = np.minimum(q_start - chain.lower, chain.upper - q_start)
+    margin = chain.margin(q_start)
     if (margin > 0.0).all():
         return None
     return Outcomes(

@@ -36,6 +36,11 @@ class ScrewChain:
         """Number of joints."""
         return len(self.joint_names)
 
+    def margin(self, q: ArrayLike) -> Array:
+        """Distance to the nearer limit, negative outside; (..., n) to (..., n), rad or m."""
+        q = np.asarray(q, dtype=float)
+        return np.minimum(q - self.lower, self.upper - q)
+
     def motions(self, q: ArrayLike) -> Array:
         """How every joint moves what lies behind it: exp(S_1 q_1) ... exp(S_i q_i) for every i.
 

@@ -21,13 +21,13 @@ import llvmlite.binding  # type: ignore[import-untyped]
 import numba
 
 from drake_screw.planning import contract, outcomes
-from drake_screw.planning.compiled import crossing, lanes, lowering, rows, step_code, trace
+from drake_screw.planning.compiled import crossing, inner, lanes, lowering, rows, step_code, trace
 from drake_screw.planning.compiled.expressions import Program
 from drake_screw.planning.compiled.link_frames import LinkFrames
 from drake_screw.planning.compiled.lowering import lane_code
 from drake_screw.typing import Array
 
-_SOURCES = (contract, crossing, lanes, lowering, outcomes, rows, trace)
+_SOURCES = (contract, crossing, inner, lanes, lowering, outcomes, rows, trace)
 """Modules that are compiled into that of an arm."""
 
 _TEXT = '''"""Plans of one arm, on blocks of lanes; written by drake_screw.planning.compiled.

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from drake_screw.planning.compiled.inner import inner
 from drake_screw.planning.compiled.rows import STEP, at
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def first_crossing(b, i, rows, limits):  # type: ignore[no-untyped-def]
     """The joint that first reaches a limit in the step, by the cubic through both its ends.
 
@@ -31,7 +31,7 @@ def first_crossing(b, i, rows, limits):  # type: ignore[no-untyped-def]
     return joint, first
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def cubic_reaches_zero(f0, d0, f1, d1):  # type: ignore[no-untyped-def]
     """The least u in [0, 1] where the cubic with these end values and slopes is not positive.
 
@@ -55,7 +55,7 @@ def cubic_reaches_zero(f0, d0, f1, d1):  # type: ignore[no-untyped-def]
     return 2.0
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def extrema(d0, c2, c3):  # type: ignore[no-untyped-def]
     """Where d0 + 2 c2 u + 3 c3 u^2 is zero in (0, 1), in order, and 1 at the end."""
     discriminant = c2 * c2 - 3.0 * c3 * d0

@@ -8,10 +8,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, uintp
+from numba import uintp
 from numpy.typing import NDArray
 
 from drake_screw.planning.compiled.crossing import first_crossing
+from drake_screw.planning.compiled.inner import inner
 from drake_screw.planning.compiled.rows import (
     ACCEPTED,
     AIM,
@@ -126,7 +127,7 @@ ITEM, END, GUIDE, INSTANCE, DEMONSTRATION, CORRECTION, STEPS, KEPT = range(8)
 plus rank in the order (-1: none left); where its run of items ends; the guiding pose ahead; ..."""
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def settle(b, lanes, queue, units, rows, problem, answers):  # type: ignore[no-untyped-def]
     """Decides for every lane with an event, and starts plans in lanes that are free.
 
@@ -181,7 +182,7 @@ def settle(b, lanes, queue, units, rows, problem, answers):  # type: ignore[no-u
     return busy
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def next_unit(i, lanes, queue, units):  # type: ignore[no-untyped-def]
     """Gives a lane the next unit of work, if any is left."""
     if queue[0] == len(units):
@@ -192,7 +193,7 @@ def next_unit(i, lanes, queue, units):  # type: ignore[no-untyped-def]
     queue[0] += 1
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def begin_plan(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     """Puts a lane at its start configuration, aiming at the first guiding pose."""
     instance, rank = divmod(lanes[i, ITEM], problem.order.shape[1])
@@ -207,7 +208,7 @@ def begin_plan(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     aim_at_guide(b, i, lanes, problem)
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def load_start(b, i, rows, starts, k):  # type: ignore[no-untyped-def]
     """Puts a lane at the end of a step that ended in start configuration k."""
     n = rows.q_stage - rows.q
@@ -219,7 +220,7 @@ def load_start(b, i, rows, starts, k):  # type: ignore[no-untyped-def]
         b[at(rows.kept + m, i)] = starts[k, uintp(n + 12 + m)]
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def save_start(b, i, rows, start):  # type: ignore[no-untyped-def]
     """The opposite of load_start."""
     n = rows.q_stage - rows.q
@@ -231,7 +232,7 @@ def save_start(b, i, rows, start):  # type: ignore[no-untyped-def]
         start[n + 12 + k] = b[at(rows.kept + k, i)]
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def aim_at_guide(b, i, lanes, problem):  # type: ignore[no-untyped-def]
     """Starts the segment to the guiding pose ahead: X_BG = X_BO X_OE."""
     guide = lanes[i, GUIDE]
@@ -248,7 +249,7 @@ def aim_at_guide(b, i, lanes, problem):  # type: ignore[no-untyped-def]
     b[at(AIM, i)] = 1.0
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def decide(b, i, lanes, rows, problem):  # type: ignore[no-untyped-def]
     """What the event of a lane means.
 

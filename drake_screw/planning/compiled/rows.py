@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from numba import njit, uintp
+from numba import uintp
+
+from drake_screw.planning.compiled.inner import inner
 
 LANES = 16
 
@@ -71,7 +73,7 @@ class Rows:
         return self.columns + (6 * self.n if self.n <= 6 else 0)
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def at(row: Any, i: Any) -> Any:
     """Index of a row and lane; unsigned, which spares the check for indices from the end."""
     return uintp(row) * uintp(LANES) + uintp(i)

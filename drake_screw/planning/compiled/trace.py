@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from drake_screw.planning.compiled.inner import inner
 from drake_screw.planning.compiled.rows import LANES, PROGRESS, STEP, at
 
 STEPS = 48
@@ -133,7 +133,7 @@ def dense_output(q: Array, u: Array) -> Array:
     return q0 + u * (q1 - q0) + u * v * (v * (d0 - q1 + q0) + u * (q1 - q0 - d1) + u * v * bend)
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def trace_step(b, i, k, rows, segment, correction, trace):  # type: ignore[no-untyped-def]
     """Writes down a lane's step, its k-th, if there is room for it."""
     if k >= trace.lane_segment.shape[1]:
@@ -157,7 +157,7 @@ def trace_step(b, i, k, rows, segment, correction, trace):  # type: ignore[no-un
         q[4, j] = step * bend
 
 
-@njit(error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@inner
 def keep_plan(i, steps, instance, demonstration, part, trace):  # type: ignore[no-untyped-def]
     """Keeps the steps of a plan that is done, if there is room for them.
 

@@ -18,10 +18,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from drake_screw.planning.compiled import functions
+from drake_screw.planning.compiled import inner as inner_module
 from drake_screw.planning.compiled.arm_module import cache_folder
+from drake_screw.planning.compiled.inner import inner
 from drake_screw.planning.swept import bounds, cell, convex, motion, separation, simplex, sweep
 from drake_screw.planning.swept.cell import QUESTIONS
-from drake_screw.planning.swept.inner import inner
 from drake_screw.planning.swept.sweep import NONE, set_out, stand
 
 Array = NDArray[np.float64]
@@ -30,7 +31,7 @@ Index = NDArray[np.int64]
 _LOG = logging.getLogger(__name__)
 
 _sweep = sweep.sweep
-_SOURCES = (bounds, cell, convex, functions, motion, separation, simplex, sweep)
+_SOURCES = (bounds, cell, convex, functions, inner_module, motion, separation, simplex, sweep)
 
 
 class Touches(NamedTuple):

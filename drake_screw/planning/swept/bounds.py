@@ -6,7 +6,7 @@ import math
 
 from numba import uintp
 
-from drake_screw.planning.swept.inner import inlined, inner
+from drake_screw.planning.compiled.inner import inlined, inner
 from drake_screw.planning.swept.motion import place_shape
 from drake_screw.planning.swept.separation import BAND, separation
 

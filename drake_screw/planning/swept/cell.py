@@ -147,7 +147,7 @@ def room_for(cell: Cell) -> Room:
         first=np.zeros(len(cell.groups) - 1),
         X_WG=np.array(cell.X_WG),
         stamp=np.zeros(len(cell.joint), dtype=np.int64),
-        clock=np.zeros(8, dtype=np.int64),
+        clock=np.zeros(1, dtype=np.int64),
         v=np.zeros((both, 3)),
         hints=np.zeros((both, 2), dtype=np.int64),
         listed=np.zeros((DEEPEST + 2, P), dtype=np.int64),

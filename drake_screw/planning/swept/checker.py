@@ -152,5 +152,10 @@ def lines(q: Array) -> Array:
     """Steps (m - 1, 5, n) of straight lines through points q (m, n); one step for one point."""
     if len(q) == 1:
         q = np.concatenate([q, q])
-    way = np.diff(q, axis=0)
-    return np.stack([q[:-1], q[1:], way, way, np.zeros_like(way)], axis=1)
+    return straight_steps(q[:-1], q[1:])
+
+
+def straight_steps(start: Array, end: Array) -> Array:
+    """Steps (m, 5, n), as a `Trace` has them, of straight lines from (m, n) to (m, n)."""
+    way = end - start
+    return np.stack([start, end, way, way, np.zeros_like(way)], axis=1)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_screw.planning.swept.inner import inner
+from drake_screw.planning.compiled.inner import inner
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -7,7 +7,7 @@ import math
 from numba import uintp
 
 from drake_screw.planning.compiled.functions import COS, SIN
-from drake_screw.planning.swept.inner import inlined
+from drake_screw.planning.compiled.inner import inlined
 
 PI = math.pi
 

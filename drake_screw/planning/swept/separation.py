@@ -12,8 +12,8 @@ bound is that of the shapes themselves.
 
 from __future__ import annotations
 
+from drake_screw.planning.compiled.inner import inner
 from drake_screw.planning.swept.convex import held, support
-from drake_screw.planning.swept.inner import inner
 from drake_screw.planning.swept.simplex import nearest
 
 ITERATIONS = 40

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,21 +100,28 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
         standing=nothing.reshape(0, 2),
         clearance=float(clearance),
     )
-    pairs, standing = _looked_at(workcell, bodies, ids, joint, objects)
+    cluster = clusters(boxes, (joints < 0) & (alone.object < 0))
+    number = {frozenset(pair): i for i, pair in enumerate(workcell.pairs)}
+    pairs, standing = _looked_at(workcell, number, bodies, ids, alone)
     kept = [
         one
         for own in _by_bodies(pairs, bodies)
-        if objects[own[0][0]] >= 0 or not never_meet(with_pairs(alone, own, [], boxes))
+        if objects[own[0][0]] >= 0 or not never_meet(with_pairs(alone, own, [], boxes, cluster))
         for one in own
     ]
-    cell = with_pairs(alone, kept, standing, boxes)
-    number = {frozenset(bodies): i for i, bodies in enumerate(workcell.pairs)}
+    cell = with_pairs(alone, kept, standing, boxes, cluster)
     both = np.concatenate([cell.pairs, cell.standing])
     of_bodies = [number[frozenset((bodies[a], bodies[b]))] for a, b in both.tolist()]
     return cell, np.array(of_bodies, dtype=np.int64)
 
 
-def with_pairs(cell: Cell, pairs: Sequence[Pair], standing: Sequence[Pair], boxes: Array) -> Cell:
+def with_pairs(
+    cell: Cell,
+    pairs: Sequence[Pair],
+    standing: Sequence[Pair],
+    boxes: Array,
+    cluster: NDArray[np.int64],
+) -> Cell:
     """A cell that looks at these pairs of its shapes.
 
     Args:
@@ -122,10 +129,9 @@ def with_pairs(cell: Cell, pairs: Sequence[Pair], standing: Sequence[Pair], boxe
         pairs: the second one of each moved by more joints than the first one.
         standing: the arm moves neither.
         boxes: (S, 2, 3) m, lower and upper corners of boxes in W around the shapes at q = 0.
+        cluster: (S,) of each shape that is fixed in W; -1 of the others.
     """
     moved = len(cell.joint) - len(cell.moved_joint)
-    fixed = (cell.joint < 0) & (cell.object < 0)
-    cluster = clusters(boxes, fixed)
     ordered = sorted(pairs, key=lambda pair: (pair[1], cell.joint[pair[0]], cluster[pair[0]], pair))
     ends = np.array(ordered, dtype=np.int64).reshape(-1, 2)
     behind = cell.joint[ends[:, 0]] + 1
@@ -136,7 +142,7 @@ def with_pairs(cell: Cell, pairs: Sequence[Pair], standing: Sequence[Pair], boxe
     for i, (begin, end) in enumerate(itertools.pairwise([*groups.tolist(), len(ends)])):
         own = ends[begin:end, 0]
         around[i, 0], around[i, 1] = boxes[own, 0].min(axis=0), boxes[own, 1].max(axis=0)
-        if not fixed[own].all():
+        if (cluster[own] < 0).any():
             around[i] = [[-np.inf] * 3, [np.inf] * 3]
     return cell._replace(
         pairs=ends,
@@ -150,22 +156,26 @@ def with_pairs(cell: Cell, pairs: Sequence[Pair], standing: Sequence[Pair], boxe
 
 def _looked_at(
     workcell: Workcell,
+    known: Container[frozenset[BodyIndex]],
     bodies: Sequence[BodyIndex],
     ids: Sequence[GeometryId],
-    joint: Sequence[int],
-    objects: Sequence[int],
+    cell: Cell,
 ) -> tuple[list[Pair], list[Pair]]:
-    """Pairs of shapes that Drake would look at, by their place; and those that stand."""
-    checker, plant = workcell.checker, workcell.plant
+    """Pairs of shapes that Drake would look at, by their place; and those that stand.
+
+    Args:
+        workcell: of the shapes.
+        known: the pairs of bodies that could touch.
+        bodies, ids: of each shape.
+        cell: the shapes.
+    """
     inspector = workcell.scene_graph.model_inspector()
-    robot = [checker.IsPartOfRobot(plant.get_body(body)) for body in bodies]
+    joint, objects = cell.joint.tolist(), cell.object.tolist()
     pairs, standing = [], []
     for a, b in itertools.product(range(len(bodies)), repeat=2):
         if joint[a] > joint[b] or (joint[a] == joint[b] and (joint[a] >= 0 or a >= b)):
             continue
-        if bodies[a] == bodies[b] or not (robot[a] or robot[b]):
-            continue
-        if checker.IsCollisionFilteredBetween(bodies[a], bodies[b]):
+        if frozenset((bodies[a], bodies[b])) not in known:
             continue
         if inspector.CollisionFiltered(ids[a], ids[b]):
             continue

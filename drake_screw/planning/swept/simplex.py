@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from drake_screw.planning.swept.inner import inner
+from drake_screw.planning.compiled.inner import inner
 
 INSIDE = 1e-12
 """m, by which the origin must lie within each face of a tetrahedron to count as inside."""

@@ -12,9 +12,9 @@ import math
 import numpy as np
 from numba import uintp
 
+from drake_screw.planning.compiled.inner import inlined, inner
 from drake_screw.planning.swept.bounds import between, exactly, outside, standing_shapes
 from drake_screw.planning.swept.cell import DEEPEST, QUESTIONS
-from drake_screw.planning.swept.inner import inlined, inner
 from drake_screw.planning.swept.motion import (
     place_arm,
     place_balls,
@@ -55,8 +55,8 @@ def as_polynomial(q, room):  # type: ignore[no-untyped-def]
         room.bend[2, k] = middle
         room.bend[3, k] = q1 - 0.25 * d1
         room.bend[4, k] = q1
-        inner = max(abs(room.bend[1, k] - middle), abs(room.bend[3, k] - middle))
-        room.fastest[k] = 4.0 * max(inner, 0.25 * max(abs(d0), abs(d1)))
+        inside = max(abs(room.bend[1, k] - middle), abs(room.bend[3, k] - middle))
+        room.fastest[k] = 4.0 * max(inside, 0.25 * max(abs(d0), abs(d1)))
         motion += room.fastest[k]
     return motion
 
