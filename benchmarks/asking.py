@@ -1,11 +1,12 @@
 """How many demonstrations a certificate takes, by how the next one is asked for.
 
 Runs of the tasks with every asking rule (`demonstrations.ask`), with the first demonstration at a
-random place or in the middle (`demonstrations.first`), given by a simulated teacher and, with
---demonstrations, out of recordings by every way to choose one (`teacher.choose`); where that is by
-planning, the place hardly matters, so only the first rule is tried. All have the same seeds, and
-are compared run by run: "more" is how many demonstrations more a run takes than the same one in the
-first row of its table. A run without a certificate counts by the demonstrations it ended with.
+random place, in the middle or at the farthest corner (`demonstrations.first`), given by a simulated
+teacher and, with --demonstrations, out of recordings by every way to choose one (`teacher.choose`);
+where that is by planning, the place hardly matters, so only the first rule is tried. All have the
+same seeds, and are compared run by run: "more" is how many demonstrations more a run takes than the
+same one in the first row of its table. A run without a certificate counts by the demonstrations it
+ended with.
 
     python benchmarks/asking.py [TASK ...] [--runs 300] [--demonstrations DIR [--model FILE]]
 
@@ -31,7 +32,11 @@ from drake_screw.processes import share_out
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.studies.experiment import Experiment
 
-RULES, PLACES, CHOICES = names("asking_rules"), ("random", "middle"), ("nearest", "covers_most")
+RULES, PLACES, CHOICES = (
+    names("asking_rules"),
+    ("random", "middle", "farthest"),
+    ("nearest", "covers_most"),
+)
 
 
 @dataclass(frozen=True)

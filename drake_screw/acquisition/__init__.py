@@ -16,7 +16,7 @@ from drake_screw.acquisition.events import (
 from drake_screw.acquisition.grid_evaluator import Evaluator
 from drake_screw.acquisition.loop import acquire
 from drake_screw.acquisition.recorded_teacher import RecordedTeacher
-from drake_screw.acquisition.suggestion import First, random_suggestion, suggest
+from drake_screw.acquisition.suggestion import random_suggestion, suggest
 from drake_screw.acquisition.teacher import Lesson, Teacher
 from drake_screw.acquisition.tree_evaluator import TreeEvaluator
 from drake_screw.acquisition.usable_lessons import UsableLessons
@@ -29,7 +29,6 @@ __all__ = [
     "Evaluator",
     "Event",
     "Finished",
-    "First",
     "Lesson",
     "RecordedTeacher",
     "RegionsEvaluated",

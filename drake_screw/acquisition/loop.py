@@ -23,11 +23,12 @@ from drake_screw.acquisition.events import (
     Status,
     Suggestion,
 )
-from drake_screw.acquisition.suggestion import First, initial_suggestion, suggest
+from drake_screw.acquisition.suggestion import initial_suggestions, suggest
 from drake_screw.acquisition.teacher import Teacher
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.tasks import Regions
+from drake_screw.typing import Array
 
 Evaluate = Callable[[int, tuple[Demonstration, ...], int], tuple[Evaluation, Verdict]]
 """(round, demonstrations, attempt) to what was seen and what it shows; see `Evaluator.evaluate`."""
@@ -54,7 +55,7 @@ def acquire(
     budget: int,
     seed: int,
     ask: AskingRule = earliest,
-    first: First = "random",
+    first: Array | None = None,
 ) -> Iterator[Event]:
     """Acquire demonstrations until every region is covered, or as far as it goes.
 
@@ -67,7 +68,8 @@ def acquire(
         budget: most demonstrations in total.
         seed: of the run; with the arguments it determines everything.
         ask: chooses the failed instance at which the next one is asked for.
-        first: where the first of the initial ones is asked for; the others are at random places.
+        first: (k, 3) where the first of the initial ones is asked for, as of `first_place`; None,
+            and for the others, at random.
 
     Yields:
         Events; the last is `Finished`.
@@ -75,8 +77,8 @@ def acquire(
     acquired = _Acquired((), ())
     if isinstance(initial, int):
         for number in range(initial):
-            place = initial_place(regions, seed, number, first)
-            added, remark = yield from _ask(teacher, learn, acquired, 0, (place,), seed)
+            places = initial_places(regions, seed, number, first)
+            added, remark = yield from _ask(teacher, learn, acquired, 0, places, seed)
             if added is None:
                 yield _finished(f"no initial demonstration: {remark}", None, acquired)
                 return
@@ -118,9 +120,11 @@ def acquire(
         acquired = added
 
 
-def initial_place(regions: Regions, seed: int, number: int, first: First) -> Suggestion:
-    """Where initial demonstration `number`, from 0, is asked for."""
-    return initial_suggestion(regions, _rng(seed, number, _PLACE), number, first)
+def initial_places(
+    regions: Regions, seed: int, number: int, first: Array | None
+) -> tuple[Suggestion, ...]:
+    """Where initial demonstration `number`, from 0, is asked for, one place after the other."""
+    return initial_suggestions(regions, _rng(seed, number, _PLACE), number, first)
 
 
 def _ask(

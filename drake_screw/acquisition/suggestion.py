@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,7 @@ from drake_screw.acquisition.asking import AskingRule, earliest, evenly
 from drake_screw.acquisition.events import Evaluation, Suggestion
 from drake_screw.errors import PluginError
 from drake_screw.tasks import Regions
-
-First = Literal["random", "middle"]
-"""Where the first demonstration is asked for: anywhere in the work area, or in its middle."""
+from drake_screw.typing import Array
 
 FAILING = 256
 """Failed instances that a suggestion has with it."""
@@ -63,23 +61,28 @@ def random_suggestion(regions: Regions, rng: np.random.Generator) -> Suggestion:
     return Suggestion(int(regions.index(x_y_yaw)), x_y_yaw)
 
 
-def initial_suggestion(
-    regions: Regions, rng: np.random.Generator, number: int, first: First = "random"
-) -> Suggestion:
+def initial_suggestions(
+    regions: Regions, rng: np.random.Generator, number: int, first: Array | None = None
+) -> tuple[Suggestion, ...]:
     """Where an initial demonstration is asked for. What may fail is the whole work area.
 
     Args:
         regions: the run's partition.
         rng: draws the place.
         number: of the demonstration, from 0.
-        first: where number 0 is asked for; the others are at random places.
+        first: (k, 3) where number 0 is asked for, NaN what is drawn; None, and for the others, at a
+            random place.
+
+    Returns:
+        The place, and behind one that is settled a random one, should it be out of reach.
     """
     lower, upper = regions.area.lower, regions.area.upper
-    place = random_suggestion(regions, rng)
-    if first == "middle" and number == 0:
-        x_y_yaw = (lower + upper) / 2.0
-        place = Suggestion(int(regions.index(x_y_yaw)), x_y_yaw)
-    return replace(place, failing=rng.uniform(lower, upper, (FAILING, *lower.shape)))
+    places = [random_suggestion(regions, rng)]
+    if first is not None and number == 0 and np.isfinite(first).any():
+        x_y_yaw = np.where(np.isnan(first), places[0].x_y_yaw, first)
+        places.insert(0, Suggestion(int(regions.index(x_y_yaw)), x_y_yaw))
+    failing = rng.uniform(lower, upper, (FAILING, *lower.shape))
+    return tuple(replace(place, failing=failing) for place in places)
 
 
 def _checked(rule: AskingRule, rows: NDArray[Any], evaluation: Evaluation) -> NDArray[np.int64]:

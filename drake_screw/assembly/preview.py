@@ -122,8 +122,12 @@ class Preview:
         if self.recorded_on is not None:
             none = "none yet; recordings named in the scenario would be "
             yield "recorded", f"{'' if self.recordings_named else none}on {self.recorded_on}"
-        first = {"random": "; at a random place first", "middle": "; in the middle first"}
-        yield "asks", self.ask + first.get(self.first or "", "")
+        first = {
+            "random": "at a random place",
+            "middle": "in the middle",
+            "farthest": "at the corner farthest from the shoulder",
+        }
+        yield "asks", self.ask + (f"; {first[self.first]} first" if self.first else "")
         yield "budget", f"{self.budget} demonstrations"
         if self.farthest_corner > self.robot.reach:
             yield (

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.acquisition import AskingRule, Evaluator, Teacher, TreeEvaluator
+from drake_screw.acquisition.first import first_place
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
 from drake_screw.assembly.placing import InstanceLike, placed
@@ -181,6 +182,12 @@ class Setup(PlanningSetup):
         """
         passed_in = self._parts.get("ask")
         return passed_in or find("asking_rules", self.scenario.demonstrations.ask)
+
+    @cached_property
+    def first(self) -> Array:
+        """(k, 3) where the first demonstration is asked for; NaN what is drawn at random."""
+        shoulder = self.workcell.arm.screw_chain().shoulder
+        return first_place(self.scenario.demonstrations.first, self.area, shoulder)
 
     @cached_property
     def initial(self) -> int | tuple[Recording, ...]:

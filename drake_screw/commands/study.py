@@ -47,7 +47,7 @@ def study(
 ) -> None:
     """Measure how many demonstrations a certificate takes.
 
-    For several numbers of regions; every run has fresh samples and a random first demonstration.
+    For several numbers of regions; every run has fresh samples.
     """
     if resume is not None:
         check_resumed_alone("study", scenario, demonstrations, model, seed, output, set_)

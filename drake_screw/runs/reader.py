@@ -19,7 +19,7 @@ from drake_screw.acquisition import (
     Status,
     Suggestion,
 )
-from drake_screw.acquisition.loop import initial_place
+from drake_screw.acquisition.loop import initial_places
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
@@ -79,8 +79,9 @@ class RunReader:
         if given and known < initial:
             raise self._lacks("the initial demonstrations")
         for number in range(0 if given else min(initial, known)):
-            place = initial_place(self.setup.regions, record.seed, number, block.first)
-            yield from self._lesson(0, number, place)
+            setup = self.setup
+            places = initial_places(setup.regions, record.seed, number, setup.first)
+            yield from self._lesson(0, number, places[0])
         verdict = None
         for round in range(self.rounds):
             event = self.event(round)

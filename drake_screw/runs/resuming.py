@@ -60,7 +60,7 @@ def carry_on(reader: RunReader, progress: Progress) -> Iterator[Event]:
         budget=scenario.demonstrations.budget,
         seed=scenario.seed,
         ask=setup.ask,
-        first=scenario.demonstrations.first,
+        first=setup.first,
     )
 
 

@@ -79,9 +79,12 @@ class DemonstrationsBlock(Block):
     ] = 1
     """how many demonstrations to ask for before the first round, or a list of recording folders,
     relative to the scenario file"""
-    first: Annotated[Literal["random", "middle"], OneOf(("random", "middle"))] = "random"
-    """where the first of the initial demonstrations is asked for: at a random place, or in the
-    middle of the work area; the others are at random places"""
+    first: Annotated[
+        Literal["random", "middle", "farthest"], OneOf(("random", "middle", "farthest"))
+    ] = "random"
+    """where the first of the initial demonstrations is asked for: at a random place, in the middle
+    of the work area, or at its corner farthest from the arm's shoulder; the others are at random
+    places"""
     ask: Annotated[str, PartOf("asking_rules")] = "earliest"
     """chooses the failed instance at which the next demonstration is asked for: in the weakest
     region, the one where the best attempt got least far (earliest) or where most fails around it

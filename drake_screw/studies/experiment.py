@@ -140,7 +140,7 @@ class Experiment:
             budget=setup.scenario.demonstrations.budget,
             seed=seed,
             ask=setup.ask,
-            first=setup.scenario.demonstrations.first,
+            first=setup.first,
         )
 
     def _teacher(self, regions: GridRegions) -> Teacher:

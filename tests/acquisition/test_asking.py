@@ -18,7 +18,8 @@ from drake_screw.acquisition.asking import (
     evenly,
     shares,
 )
-from drake_screw.acquisition.suggestion import FAILING, initial_suggestion, suggest
+from drake_screw.acquisition.first import first_place
+from drake_screw.acquisition.suggestion import FAILING, initial_suggestions, suggest
 from drake_screw.bandits import Cell
 from drake_screw.errors import PluginError
 from drake_screw.planning import Cause, Outcomes
@@ -239,15 +240,46 @@ def test_a_suggestion_has_instances_with_it_from_all_that_fails() -> None:
 
 
 def test_the_first_demonstration_may_be_asked_for_in_the_middle_and_the_others_not() -> None:
-    anywhere = initial_suggestion(REGIONS, rng(7), 0)
-    middle = initial_suggestion(REGIONS, rng(7), 0, "middle")
-    second = initial_suggestion(REGIONS, rng(7), 1, "middle")
+    settled = first_place("middle", AREA, np.zeros(3))
+    (anywhere,) = initial_suggestions(REGIONS, rng(7), 0)
+    middle, instead = initial_suggestions(REGIONS, rng(7), 0, settled)
+    (second,) = initial_suggestions(REGIONS, rng(7), 1, settled)
     assert middle.x_y_yaw.tolist() == [[1.0, 0.5, 0.0]]
     assert middle.region == REGIONS.index(middle.x_y_yaw)
     drawn = rng(7).uniform(AREA.lower, AREA.upper)
-    for place in (anywhere, second):
+    for place in (anywhere, instead, second):
         np.testing.assert_array_equal(place.x_y_yaw, drawn)
         assert place.region == REGIONS.index(drawn)
     assert middle.failing.shape == (FAILING, 1, 3)
     assert AREA.contains(middle.failing).all()
     assert np.ptp(middle.failing[:, 0, 0]) > 1.8
+
+
+def area(*boxes: tuple[tuple[float, ...], tuple[float, ...]]) -> WorkArea:
+    return WorkArea(tuple(ObjectArea(f"object_{i}", *box, 0.0) for i, box in enumerate(boxes)))
+
+
+def test_the_farthest_corner_is_that_of_the_greatest_distance_for_each_object() -> None:
+    wide = ((-0.3, 0.1, -1.0), (0.7, 0.9, 1.0))
+    behind = ((-2.0, -1.0, 0.0), (-1.0, 0.5, 0.0))
+    shoulder = np.array([0.1, -0.4, 0.9])
+    place = first_place("farthest", area(wide, behind), shoulder)
+    for (lower, upper), found in zip((wide, behind), place, strict=True):
+        corners = [(x, y) for x in (lower[0], upper[0]) for y in (lower[1], upper[1])]
+        away = [np.hypot(x - shoulder[0], y - shoulder[1]) for x, y in corners]
+        assert tuple(found[:2]) == corners[int(np.argmax(away))]
+    assert np.isnan(place[:, 2]).all()
+
+
+def test_at_the_farthest_corner_the_yaw_is_drawn_and_a_random_place_comes_behind() -> None:
+    turning = area(((0.0, 0.0, -2.0), (2.0, 1.0, 2.0)))
+    regions = grid_regions(turning, {"x": 2, "y": 1})
+    settled = first_place("farthest", turning, np.array([0.0, 0.2, 0.5]))
+    corner, instead = initial_suggestions(regions, rng(3), 0, settled)
+    drawn = rng(3).uniform(turning.lower, turning.upper)
+    assert corner.x_y_yaw.tolist() == [[2.0, 1.0, drawn[0, 2]]]
+    assert corner.region == regions.index(corner.x_y_yaw)
+    np.testing.assert_array_equal(instead.x_y_yaw, drawn)
+    at_random = first_place("random", turning, np.zeros(3))
+    (anywhere,) = initial_suggestions(regions, rng(3), 0, at_random)
+    np.testing.assert_array_equal(anywhere.x_y_yaw, drawn)

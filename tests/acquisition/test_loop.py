@@ -85,13 +85,34 @@ def test_a_rule_that_finds_nothing_to_ask_for_ends_the_run(disks) -> None:
 
 def test_the_first_demonstration_is_asked_for_in_the_middle_if_wanted(disks) -> None:
     teacher = Obliging()
-    run(disks, teacher, initial=3, first="middle")
+    run(disks, teacher, initial=3, first=np.array([[0.5, 0.5, np.nan]]))
     places = [place.x_y_yaw.tolist() for place in teacher.asked]
     assert places[0] == [[0.5, 0.5, 0.0]]
     at_random = Obliging()
     run(disks, at_random, initial=3)
     assert at_random.asked[0].x_y_yaw.tolist() != places[0]
     assert [place.x_y_yaw.tolist() for place in at_random.asked[1:3]] == places[1:3]
+
+
+class ShortArm(Obliging):
+    """Cannot be led to the first place asked for."""
+
+    def demonstrate(self, suggestion, *, number, used, rng):
+        lesson = super().demonstrate(suggestion, number=number, used=used, rng=rng)
+        return Lesson(None, "out of reach") if len(self.asked) == 1 else lesson
+
+
+def test_where_the_first_place_is_out_of_reach_a_random_one_is_asked_for(disks) -> None:
+    teacher, at_random = ShortArm(), Obliging()
+    events = run(disks, teacher, first=np.array([[1.0, 1.0, np.nan]]))
+    run(disks, at_random)
+    assert events[-1].status is Status.CERTIFIED
+    assert teacher.asked[0].x_y_yaw.tolist() == [[1.0, 1.0, 0.0]]
+    assert teacher.asked[1].x_y_yaw.tolist() == at_random.asked[0].x_y_yaw.tolist()
+    kinds = [type(event) for event in events[:3]]
+    assert kinds == [DemonstrationRequested, DemonstrationRequested, DemonstrationAdded]
+    end = run(disks, ShortArm())[-1]
+    assert end.reason == "no initial demonstration: out of reach"
 
 
 def test_a_budget_ends_the_run_with_what_was_shown() -> None:

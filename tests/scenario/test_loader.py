@@ -100,7 +100,7 @@ def test_shipped_scenarios_are_found_by_name(name: str) -> None:
 def test_shipped_scenarios_spell_out_the_defaults() -> None:
     scenario = load_scenario("pouring")
     assert scenario.coverage == CoverageBlock()
-    assert scenario.demonstrations == DemonstrationsBlock()
+    assert scenario.demonstrations == DemonstrationsBlock(first="farthest")
     assert scenario.segmentation == SegmentationBlock()
     assert scenario.planner == PlannerBlock()
 

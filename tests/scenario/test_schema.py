@@ -265,7 +265,7 @@ def test_another_robot_may_have_made_the_recordings() -> None:
             with_block("demonstrations", first="center"),
             "demonstrations.first",
             "there is no 'center'",
-            "Choices: random, middle",
+            "Choices: random, middle, farthest",
         ),
         (
             with_block("teacher", choose="most"),

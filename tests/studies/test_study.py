@@ -105,6 +105,7 @@ def test_a_run_of_a_study_is_the_ordinary_run_with_its_seed_and_grid(scenario) -
             initial=1,
             budget=12,
             seed=kept.seed,
+            first=setup.first,
         )
     )
     end = events[-1]
