@@ -27,7 +27,8 @@ def section(heading: str) -> str:
 
 
 def run(folder: Path, *changes: str) -> Run:
-    changes = ("objects.0.symmetry=null", "demonstrations.budget=1", *changes)
+    as_stated = ("objects.0.symmetry=null", "demonstrations.first=random")
+    changes = (*as_stated, "demonstrations.budget=1", *changes)
     started = new_run(load_scenario("pouring", changes), folder)
     for _ in started.events():
         pass
