@@ -126,16 +126,15 @@ def test_what_drake_ends_the_program_for_is_an_error(tmp_path: Path) -> None:
 @pytest.mark.parametrize("link", ["base", "p3_link"])
 def test_a_plane_beside_anything_but_balls_is_refused(link: str, tmp_path: Path) -> None:
     model = sdf_with(tmp_path, **{link: PLANE})
-    with pytest.raises(
-        ModelError, match=rf"link '{link}' is a plane.* the cylinder of 'bowl'"
-    ) as e:
+    with pytest.raises(ModelError, match=f"link '{link}' is a plane") as caught:
         cell_of(model, objects=(BOWL,))
-    assert e.value.file == model
-    assert "a large box in place of the plane" in str(e.value)
+    assert caught.value.file == model
+    assert "the cylinder of 'bowl'" in str(caught.value)
+    assert "a large box in place of the plane" in str(caught.value)
 
 
 def test_a_plane_beside_the_table_that_the_arm_carries_it_to_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="'p3_link' is a plane.* the box of 'table'"):
+    with pytest.raises(ModelError, match=r"'p3_link' is a plane.* the box of 'table'"):
         cell_of(sdf_with(tmp_path, p3_link=PLANE), table=TABLE)
     cell_of(sdf_with(tmp_path, base=PLANE), table=TABLE)
 
