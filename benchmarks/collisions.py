@@ -4,8 +4,10 @@
 
 plans uniform instances of the shipped scenarios with all demonstrations, simulated ones or those of
 a library, one plan for every pair (symmetries are left out), and prints plans per second within the
-joint limits alone, with collisions looked at all along them, and with Drake's own checker asked
-every 10 mm of travel. With
+joint limits alone, with collisions looked at all along them, and with two other checkers asked
+every 10 mm of travel: Drake's own, and Coal through Pinocchio (extra `benchmark`). Coal stops at a
+plan's first collision; it is asked about all of a plan at once, by one thread or by all of them,
+whichever is quicker, and once more about one configuration a call. With
 
     --agreement N   N plans a task that keep the limits are also looked at by Drake every 2 mm of
                     travel (minutes for some thousand): collisions that only Drake finds, and
@@ -17,13 +19,15 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from coal_checker import CoalChecker
 from joint_paths import Noted, Spacing
 from mesh_arm import mesh_arm
 from task import TASKS, Task, load_task
@@ -79,32 +83,60 @@ def speed(task: Task, workcell: Workcell, X_WO: Array, arguments: argparse.Names
     }
 
 
-def asked_all_along(
-    task: Task,
-    workcell: Workcell,
-    X_WO: Array,
-    planning: float,
-    asked: Callable[[Array, Array], object],
-) -> float:
-    """Plans per second where another checker is asked every 10 mm.
-
-    Args:
-        planning: plans per second within limits; their time counts, that of measuring travel not.
-        asked: whether anything touches at one of configurations (m, n) among objects (k, 4, 4).
-    """
+def paths_of(task: Task, workcell: Workcell, X_WO: Array) -> list[tuple[Array, Array]]:
+    """Plans that keep the limits: configurations (m, n) every 10 mm, and objects (k, 4, 4)."""
     checker = Noted(workcell)
     points = Spacing(checker, APART)
     planner = BatchPlanner(task.arm.screw_chain()).checked(checker)
     planner.all_outcomes(task.demonstrations, X_WO, task.q_start)
-    paths = [
+    return [
         (points(steps[first[i] : first[i + 1]]), X)
         for steps, first, objects, _ in checker.noted
         for i, X in enumerate(objects)
     ]
-    began, plans = time.perf_counter(), len(X_WO) * len(task.demonstrations)
+
+
+def asked_all_along(
+    paths: Sequence[tuple[Array, Array]], planned: float, asked: Callable[[Array, Array], object]
+) -> float:
+    """Seconds of plans with another checker, that of measuring travel left out.
+
+    Args:
+        paths: configurations of each plan, and objects.
+        planned: seconds that planning takes without a checker.
+        asked: whether anything touches at one of configurations (m, n) among objects (k, 4, 4).
+    """
+    began = time.perf_counter()
     for q, X in paths:
         asked(q, X)
-    return plans / (time.perf_counter() - began + plans / planning)
+    return time.perf_counter() - began + planned
+
+
+def beside_others(
+    workcell: Workcell, paths: Sequence[tuple[Array, Array]], planned: float, seed: int
+) -> tuple[dict[str, float], dict[str, Any] | None]:
+    """Seconds of plans with Drake's checker and with Coal; and where these two do not agree.
+
+    Args:
+        workcell: of the plans.
+        paths, planned: as `asked_all_along` has them.
+        seed: of the random configurations.
+
+    Returns:
+        By checker; and `CoalChecker.beside_drake`, None where Pinocchio is not installed.
+    """
+    seconds = {"drake": asked_all_along(paths, planned, workcell.collides)}
+    try:
+        coal = CoalChecker(workcell)
+    except ImportError:
+        print("\nPinocchio is not installed (pip install '.[benchmark]'): Coal is left out")
+        return seconds, None
+    everyone = CoalChecker(workcell, os.cpu_count() or 1)
+    seconds["coal"] = min(asked_all_along(paths, planned, c.touches) for c in (coal, everyone))
+    seconds["coal_one_by_one"] = asked_all_along(paths, planned, coal.touches_one_by_one)
+    said = coal.beside_drake(paths, np.random.default_rng(seed))
+    differ = [depth(workcell, q, X) for q, X in said.pop("differ")]
+    return seconds, {**said, "differ": differ}
 
 
 def agreement(task: Task, workcell: Workcell, count: int, seed: int) -> dict[str, Any]:
@@ -162,10 +194,14 @@ def measure(name: str, arguments: argparse.Namespace) -> dict[str, Any]:
     X_WO = task.instances(arguments.instances, rng)
     result = speed(task, workcell, X_WO, arguments)
     some = X_WO[: arguments.slow]
-    per_second = result["plans_per_second"]
-    per_second["drake"] = asked_all_along(
-        task, workcell, some, per_second["limits_only"], workcell.collides
+    per_second, plans = result["plans_per_second"], len(some) * len(task.demonstrations)
+    seconds, result["coal_and_drake"] = beside_others(
+        workcell,
+        paths_of(task, workcell, some),
+        plans / per_second["limits_only"],
+        arguments.seed,
     )
+    per_second.update({checker: plans / spent for checker, spent in seconds.items()})
     report(name, result)
     if arguments.meshes:
         with tempfile.TemporaryDirectory() as folder:
@@ -187,8 +223,7 @@ def measure(name: str, arguments: argparse.Namespace) -> dict[str, Any]:
             f"({found['configurations']:,} configurations)"
         )
         for kind in ("missed", "unconfirmed"):
-            for one in found[kind]:
-                print(f"    {kind}: {1e3 * one['m']:.4f} mm, {' and '.join(one['bodies'])}")
+            list_depths(kind, found[kind])
     return result
 
 
@@ -207,6 +242,8 @@ def report(name: str, result: dict[str, Any]) -> None:
         "checked": "collisions looked at",
         "limits_only": "joint limits only",
         "drake": f"Drake every {1e3 * APART:g} mm",
+        "coal": f"Coal every {1e3 * APART:g} mm",
+        "coal_one_by_one": "the same, one by one",
     }
     for key, title in rows.items():
         if key in result["plans_per_second"]:
@@ -214,6 +251,18 @@ def report(name: str, result: dict[str, Any]) -> None:
     print(f"  {'checks alone':32}{result['checks_per_second']:12,.0f} plans/s")
     print(f"  questions to Drake a checked plan {result['questions_per_checked_plan']:.4f}")
     print(f"  settled by bounds {100.0 * result['settled_by_bounds']:.3f} % of the checked plans")
+    if said := result.get("coal_and_drake"):
+        print(
+            f"  Coal and Drake differ at {len(said['differ'])} of {said['configurations']:,} "
+            f"configurations, {said['touch']:,} of which touch something"
+        )
+        list_depths("differ", said["differ"])
+
+
+def list_depths(kind: str, found: Sequence[dict[str, Any]]) -> None:
+    """Print what `depth` says of some configurations."""
+    for one in found:
+        print(f"    {kind}: {1e3 * one['m']:.4f} mm, {' and '.join(one['bodies'])}")
 
 
 def main() -> None:

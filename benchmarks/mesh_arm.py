@@ -34,8 +34,7 @@ def mesh_arm(model: Path, folder: Path) -> Path:
         points = _points(geometry[0])
         if points is None:
             continue
-        file = folder / f"shape_{number}.obj"
-        _write(file, points)
+        file = write_obj(folder / f"shape_{number}.obj", points)
         geometry.clear()
         ET.SubElement(ET.SubElement(geometry, "mesh"), "uri").text = file.name
     written = folder / model.name
@@ -98,12 +97,13 @@ def _bulging(p: Array) -> Array:
     return p * (1.0 + BULGE * (3.0 - (p * p).sum(axis=1, keepdims=True)) / 2.0)
 
 
-def _write(file: Path, points: Array) -> None:
-    """The convex hull of points as an .obj file, its triangles seen from outside."""
+def write_obj(file: Path, points: Array) -> Path:
+    """A mesh of the convex hull of points (c, 3), its triangles seen from outside."""
     hull = ConvexHull(points)
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in points]
+    lines = [f"v {x} {y} {z}" for x, y, z in points]
     for face, equation in zip(hull.simplices, hull.equations, strict=True):
         a, b, c = points[face]
         outward = np.cross(b - a, c - a) @ equation[:3] > 0.0
         lines.append("f " + " ".join(str(k + 1) for k in (face if outward else face[::-1])))
     file.write_text("\n".join(lines) + "\n")
+    return file

@@ -24,7 +24,7 @@ from random import Random
 from mutmut.mutation.file_mutation import mutate_file_contents
 
 ROOT = Path(__file__).resolve().parents[1]
-COPIED = ("drake_screw", "tests", "models", "scenarios")
+COPIED = ("drake_screw", "tests", "benchmarks", "models", "scenarios")
 PACKAGES = ("screws", "planning", "bandits", "acquisition", "demonstrations")
 KILLED = ("killed", "timeout", "segfault")
 # mutmut runs the tests in forks of a process that has not used Drake: its threads would be missing.
@@ -32,7 +32,7 @@ CONFIGURATION = """
 [tool.mutmut]
 source_paths = ["drake_screw"]
 only_mutate = ["{pattern}"]
-also_copy = ["models", "scenarios"]
+also_copy = ["models", "scenarios", "benchmarks"]
 pytest_add_cli_args_test_selection = ["tests/{package}"]
 process_isolation = "forkserver"
 track_dependencies = false

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from drake_screw.robot import ScrewChain
 from drake_screw.typing import Array
 
 
-class PinocchioArm:
-    """What the reference planner asks of an `Arm`, answered by Pinocchio (Carpentier et al. 2019).
+def model_of(chain: ScrewChain) -> Any:
+    """Pinocchio's model of an arm (Carpentier et al. 2019) with a frame "hand" at its end effector.
+
+    At q = 0 the frames of all joints are parallel to W.
 
     Args:
         chain: the arm's screws; the model is built of them.
@@ -17,29 +21,43 @@ class PinocchioArm:
     Raises:
         ImportError: Pinocchio is not installed; it comes with the extra `benchmark`.
     """
+    import pinocchio
+
+    model = pinocchio.Model()
+    parent, before = 0, np.zeros(3)
+    for name, S in zip(chain.joint_names, chain.screws, strict=True):
+        turns = np.linalg.norm(S[:3]) > 0.5
+        axis, at = (S[:3], np.cross(S[:3], S[3:])) if turns else (S[3:], before)
+        kind = (
+            pinocchio.JointModelRevoluteUnaligned
+            if turns
+            else pinocchio.JointModelPrismaticUnaligned
+        )
+        place = pinocchio.SE3(np.eye(3), at - before)
+        parent, before = model.addJoint(parent, kind(*axis), place, name), at
+    R, p = chain.home[:3, :3], chain.home[:3, 3]
+    place = pinocchio.SE3(R, p - before)
+    model.addFrame(pinocchio.Frame("hand", parent, 0, place, pinocchio.FrameType.OP_FRAME))
+    return model
+
+
+class PinocchioArm:
+    """What the reference planner asks of an `Arm`, answered by Pinocchio.
+
+    Args:
+        chain: the arm's screws.
+
+    Raises:
+        ImportError: as `model_of`.
+    """
 
     def __init__(self, chain: ScrewChain) -> None:
         import pinocchio
 
         self._pin = pinocchio
         self.n, self.lower, self.upper = chain.n, chain.lower, chain.upper
-        self._model = pinocchio.Model()
-        parent, before = 0, np.zeros(3)
-        for name, S in zip(chain.joint_names, chain.screws, strict=True):
-            turns = np.linalg.norm(S[:3]) > 0.5
-            axis, at = (S[:3], np.cross(S[:3], S[3:])) if turns else (S[3:], before)
-            kind = (
-                pinocchio.JointModelRevoluteUnaligned
-                if turns
-                else pinocchio.JointModelPrismaticUnaligned
-            )
-            place = pinocchio.SE3(np.eye(3), at - before)
-            parent, before = self._model.addJoint(parent, kind(*axis), place, name), at
-        R, p = chain.home[:3, :3], chain.home[:3, 3]
-        hand = pinocchio.Frame(
-            "hand", parent, 0, pinocchio.SE3(R, p - before), pinocchio.FrameType.OP_FRAME
-        )
-        self._hand = self._model.addFrame(hand)
+        self._model = model_of(chain)
+        self._hand = self._model.getFrameId("hand")
         self._data = self._model.createData()
 
     def pose(self, q: Array) -> Array:

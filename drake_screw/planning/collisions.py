@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.demonstrations import Demonstration
+from drake_screw.planning import connection
 from drake_screw.planning.batch import BatchPlanner
 from drake_screw.planning.connected import ahead, led_around, tried_first
-from drake_screw.planning.connection import available, warn_of_its_absence
 from drake_screw.planning.outcomes import Cause, Outcomes, Plan, one_outcome
 from drake_screw.planning.plan_checker import PlanChecker
 from drake_screw.robot import Workcell
@@ -43,9 +43,9 @@ class CollisionFreePlanner:
         self.planner = planner
         self.checker = PlanChecker(workcell, clearance)
         self.checked = planner.checked(self.checker.swept)
-        self.connects = bool(planner.others) and available()
+        self.connects = bool(planner.others) and connection.available()
         if planner.others and not self.connects:
-            warn_of_its_absence()
+            connection.warn_of_its_absence()
 
     @property
     def evaluations(self) -> int:

@@ -35,19 +35,6 @@ class Collisions:
     q: Array
 
 
-@dataclass(frozen=True)
-class Hit:
-    """Where a plan first touches something: segment from 0, fraction of it, pairs of bodies."""
-
-    segment: int
-    fraction: float
-    bodies: tuple[tuple[str, str], ...]
-
-    def __str__(self) -> str:
-        pairs = ", ".join(f"{a} touches {b}" for a, b in self.bodies)
-        return f"{pairs} in segment {self.segment + 1}"
-
-
 class PlanChecker:
     """Finds the collisions of plans in a workcell, all along them: see `planning.swept`.
 
@@ -77,20 +64,6 @@ class PlanChecker:
             none = np.zeros(0)
             return Collisions(none.astype(bool), none.astype(int), none, np.zeros((0, n)))
         return _collisions(plans, self._along([p.q for p in plans], np.asarray(X_WO, dtype=float)))
-
-    def explain(self, plan: Plan, X_WO: ArrayLike) -> Hit | None:
-        """The first collision of a plan among objects X_WO (k, 4, 4), if there is one."""
-        X_WO = np.asarray(X_WO, dtype=float)
-        touched = self._along([plan.q], X_WO[None])
-        if not touched.touches[0]:
-            return None
-        found, pair = _collisions([plan], touched), int(touched.pair[0])
-        bodies: tuple[tuple[str, str], ...] = ()
-        if pair >= 0:
-            bodies = (self.workcell.touching(pair),)
-        else:
-            bodies = self.workcell.colliding_bodies(found.q[0], X_WO, self.swept.clearance)
-        return Hit(int(found.segment[0]), float(found.fraction[0]), bodies)
 
     def free(self, q: Array, X_WO: Array) -> bool:
         """Whether a path touches nothing.

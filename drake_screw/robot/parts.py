@@ -16,6 +16,7 @@ from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
 
 from drake_screw.errors import ModelError, unknown
 from drake_screw.resources import MODEL_SUFFIXES, find_resource
+from drake_screw.robot.model_text import check_collision_shapes
 from drake_screw.robot.names import check_apart
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
 from drake_screw.robot.shapes import register
@@ -71,13 +72,15 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     What it holds becomes a body of the same model instance.
 
     Raises:
-        ModelError: the model or the tool's mesh cannot be read, or the model lacks a name.
+        ModelError: the model or the tool's mesh cannot be read, the model lacks a name, or has a
+            collision shape that Drake would not take as it is.
     """
     plant = parser.plant()
     file = find_resource("models", robot.model, MODEL_SUFFIXES)
+    check_collision_shapes(file)
     try:
         instance = parser.AddModels(str(file))[0]
-    except (RuntimeError, ValueError) as error:
+    except (RuntimeError, ValueError, SystemExit) as error:
         raise ModelError(f"Drake cannot read this model: {error}", file=file) from error
     names = [plant.get_body(i).name() for i in plant.GetBodyIndices(instance)]
     if robot.base not in names:

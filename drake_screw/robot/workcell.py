@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydrake.geometry import SceneGraph
+from pydrake.geometry import HalfSpace, SceneGraph, Shape, Sphere
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody
 from pydrake.planning import (
@@ -170,7 +170,7 @@ def build_workcell(
 
     Raises:
         ModelError: the model cannot be read, or lacks a name the configuration asks for; a mesh
-            cannot be read; two things have one name.
+            cannot be read; two things have one name; Drake cannot tell whether two shapes touch.
     """
     builder = RobotDiagramBuilder(time_step=0.0)
     plant: MultibodyPlant = builder.plant()
@@ -192,6 +192,31 @@ def build_workcell(
         CollisionCheckerParams(model=diagram, robot_model_instances=[instance], edge_step_size=0.05)
     )
     start = np.array(robot.start, dtype=float)
-    return Workcell(
+    workcell = Workcell(
         diagram, plant, scene_graph, arm, start, bodies, instance, model_file, checker, fixed, tool
     )
+    _check_planes(workcell)
+    return workcell
+
+
+def _check_planes(workcell: Workcell) -> None:
+    """Refuse half spaces beside anything but balls: Drake knows no distance of these."""
+    plant, inspector = workcell.plant, workcell.scene_graph.model_inspector()
+
+    def shapes(body: BodyIndex) -> list[Shape]:
+        geometries = plant.GetCollisionGeometriesForBody(plant.get_body(body))
+        return [inspector.GetShape(geometry) for geometry in geometries]
+
+    for a, b in itertools.chain.from_iterable((pair, pair[::-1]) for pair in workcell.pairs):
+        if not any(isinstance(shape, HalfSpace) for shape in shapes(a)):
+            continue
+        for other in shapes(b):
+            if not isinstance(other, Sphere):
+                plane, beside = plant.get_body(a).name(), plant.get_body(b).name()
+                raise ModelError(
+                    f"a collision shape of link '{plane}' is a plane, and Drake cannot tell "
+                    f"whether it touches the {type(other).__name__.lower()} of '{beside}'",
+                    remedy="Give the link a large box in place of the plane, its top where the "
+                    "plane is.",
+                    file=workcell.model_file,
+                )

@@ -50,26 +50,33 @@ def check_parts(setup: Setup, directory: RunDirectory) -> None:
         )
 
 
-def check_ways_around(setup: Setup, directory: RunDirectory) -> None:
-    """Refuse to judge some rounds with ways around what is touched, and others without.
+def check_ways_around(setup: Setup, before: bool | None, what: str, path: Path) -> None:
+    """Refuse to judge one part with ways around what is touched, and another without.
+
+    Args:
+        setup: as it is now.
+        before: what `Setup.leads_around` was in the beginning; None where that is not known.
+        what: that is carried on, a "run" or a "study".
+        path: its directory.
 
     Raises:
         RunDirectoryError: OMPL was there and is not, or the other way round.
     """
-    before, now = directory.record.led_around, setup.leads_around
+    now = setup.leads_around
     if before is None or now is None or before == now:
         return
+    again = "run the scenario again" if what == "run" else f"begin the {what} again"
     if before:
         raise RunDirectoryError(
-            "this run was begun with OMPL, which leads the arm around what a free approach "
+            f"this {what} was begun with OMPL, which leads the arm around what a free approach "
             "touches; it is not installed now, and more plans would fail",
-            remedy="Install it to carry the run on (pip install 'drake-screw[ompl]'), or run the "
-            "scenario again.",
-            file=directory.path,
+            remedy=f"Install it to carry the {what} on (pip install 'drake-screw[ompl]'), or "
+            f"{again}.",
+            file=path,
         )
     raise RunDirectoryError(
-        "this run was begun without OMPL, so that plans fail whose free approach touches "
+        f"this {what} was begun without OMPL, so that plans fail whose free approach touches "
         "something; it is installed now, and would lead the arm around",
-        remedy="Run the scenario again, or carry this run on where OMPL is not installed.",
-        file=directory.path,
+        remedy=f"{again.capitalize()}, or carry this {what} on where OMPL is not installed.",
+        file=path,
     )

@@ -120,7 +120,7 @@ class Run:
                 other way round.
         """
         check_parts(self.setup, self.directory)
-        check_ways_around(self.setup, self.directory)
+        check_ways_around(self.setup, self.directory.record.led_around, "run", self.directory.path)
 
         def progress(event: RegionsEvaluated) -> None:
             for listener in listeners:

@@ -26,6 +26,7 @@ from drake_screw.files import (
     writing,
 )
 from drake_screw.processes import WorkerLost, share_out
+from drake_screw.runs.begun_with import check_ways_around
 from drake_screw.runs.directory import SCENARIO, now, versions
 from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
@@ -88,14 +89,18 @@ class Study:
             Each run as it is finished.
 
         Raises:
-            RunDirectoryError: the table is damaged or cannot be written, or a process was killed.
+            RunDirectoryError: the table is damaged or cannot be written, a process was killed, or
+                runs are missing and OMPL is installed where it was not, or is not where it was.
         """
         finished = self.finished_runs()
         table = self.path / RUNS
-        with writing(table, _UNWRITABLE):
-            write_text(table, csv_text([HEADER, *map(row, finished)]))
         done = {(run.K, run.run) for run in finished}
         missing = [(K, i) for i in range(self.runs) for K in self.regions if (K, i) not in done]
+        if missing:
+            before = self.record.get("led_around")
+            check_ways_around(self.experiment.setup, before, "study", self.path)
+        with writing(table, _UNWRITABLE):
+            write_text(table, csv_text([HEADER, *map(row, finished)]))
         self._save("running")
         try:
             with table.open("a") as lines:
@@ -204,6 +209,7 @@ def new_study(
         "hashes": {
             name: file_hash(file) for name, file in ({"model": model} | setup.meshes).items()
         },
+        "led_around": setup.leads_around,
         "versions": versions(),
         "started": now(),
         "finished": None,

@@ -120,7 +120,7 @@ def test_a_free_path_is_free(checker, batch) -> None:
     assert not found.collides.any()
     assert (found.segment == -1).all()
     assert np.isnan(found.q).all()
-    assert checker.explain(plans[0], X_WO[0]) is None
+    assert checker.free(plans[0].q, X_WO[0])
 
 
 def test_first_collisions_are_those_of_a_dense_search(checker, batch, workcell) -> None:
@@ -163,23 +163,12 @@ def test_free_paths_are_cleared_without_asking_drake(workcell, batch) -> None:
     assert checker.asked == 0
 
 
-def test_a_collision_is_explained_by_segment_and_bodies(checker, batch) -> None:
-    X_WO = placed(AT)
-    hit = checker.explain(plans_of(batch, THROUGH, X_WO)[0], X_WO[0])
-    assert hit is not None
-    assert hit.segment == 1
-    assert 0.0 < hit.fraction < 1.0
-    assert any("bowl" in pair for pair in hit.bodies)
-    assert "touches" in str(hit)
-    assert str(hit).endswith("in segment 2")
-
-
 @pytest.fixture(scope="module")
 def planners(workcell, batch):
     return batch, CollisionFreePlanner(batch, workcell)
 
 
-def test_colliding_successes_become_collisions(planners) -> None:
+def test_colliding_successes_become_collisions(planners, workcell) -> None:
     batch, planner = planners
     X_WO = some_places(5)
     before = batch.all_outcomes([ABOVE, THROUGH], X_WO, START)
@@ -189,6 +178,7 @@ def test_colliding_successes_become_collisions(planners) -> None:
     assert (after.cause[:, 1] == Cause.COLLISION).all()
     assert (after.codes()[:, 1] == "2:c").all()
     assert ((after.fraction[:, 1] > 0.0) & (after.fraction[:, 1] < 1.0)).all()
+    assert {workcell.touching(pair)[1] for pair in after.pair[:, 1].tolist()} == {"bowl"}
 
 
 def test_the_planner_and_the_checker_of_plans_agree(planners) -> None:
@@ -233,9 +223,9 @@ def rng() -> np.random.Generator:
 def test_a_moving_screw_of_the_bowl_moves_the_answer(checker, batch) -> None:
     """Turning the bowl about its axis changes nothing; the demonstration turns with it."""
     turned = placed(AT) @ exp(np.array([0.0, 0.0, 0.2, 0.0, 0.0, 0.0]))
-    hit = checker.explain(plans_of(batch, THROUGH, turned)[0], turned[0])
-    assert hit is not None
-    assert hit.segment == 1
+    found = checker.first_collisions(plans_of(batch, THROUGH, turned), turned)
+    assert found.collides[0]
+    assert found.segment[0] == 1
 
 
 def test_a_turn_that_touches_nothing_is_found_after_those_that_do(workcell) -> None:
@@ -250,16 +240,16 @@ def test_a_turn_that_touches_nothing_is_found_after_those_that_do(workcell) -> N
     seen = set()
     for i, (d, lesson) in itertools.product(range(12), enumerate(lessons)):
         turns = turning.variant_outcomes(lesson, X_WO[i : i + 1], START)[0]
-        free, touches = [], 0
+        free, touching = [], 0
         for turn in np.flatnonzero(turns.success):
             plan = turning.plan(lesson, X_WO[i], START, int(turn))
-            hit = planner.checker.explain(plan, X_WO[i])
-            free += [int(turn)] if hit is None else []
-            touches += hit is not None
+            touches = not planner.checker.free(plan.q, X_WO[i])
+            free += [] if touches else [int(turn)]
+            touching += touches
         assert bool(found.success[i, d]) is bool(free)
         if free:
             assert found.variant[i, d] == free[0]
-        seen.add((bool(free), touches > 0))
+        seen.add((bool(free), touching > 0))
     assert {(True, True), (True, False), (False, True)} <= seen
     some = planner.any_success(lessons, X_WO, START)
     np.testing.assert_array_equal(some.any_success, found.any_success)
@@ -288,6 +278,5 @@ def test_an_arm_of_three_joints_is_checked_for_collisions(tmp_path: Path) -> Non
         assert batch.all_outcomes(lessons, X_WO, bent).codes() == "0:0"
         for answer in (planner.all_outcomes, planner.any_success):
             assert answer(lessons, X_WO, bent).codes() == code
-    hit = planner.checker.explain(batch.plan(lesson(within[0]), within[0], bent), within[0])
-    assert hit is not None
-    assert ("p3_link", "pole") in hit.bodies
+    touching = planner.all_outcomes([lesson(within[0])], within, bent).pair.item()
+    assert workcell.touching(touching) == ("p3_link", "pole")

@@ -127,10 +127,9 @@ def test_plans_are_those_that_were_judged(planner, workcell) -> None:
     plan = planner.plan(lesson, PASSABLE, START, int(found.variant))
     assert plan.success
     assert plan.approach
-    assert planner.checker.explain(plan, PASSABLE) is None
-    assert planner.checker.explain(
-        planner.planner.plan(lesson, PASSABLE, START, int(found.variant)), PASSABLE
-    )
+    assert planner.checker.free(plan.q, PASSABLE)
+    straight_on = planner.planner.plan(lesson, PASSABLE, START, int(found.variant))
+    assert not planner.checker.free(straight_on.q, PASSABLE)
     connect(planner.checker, GOAL, START, PASSABLE, seed=3)
     again, free = planner.plans(
         [lesson, lesson_of(workcell, AWAY)], np.stack([PASSABLE, AWAY]), START, [0, 1],
@@ -199,7 +198,7 @@ def test_without_ompl_nothing_changes_but_a_warning(workcell, monkeypatch, caplo
     some = planner.any_success([lesson], PASSABLE[None], START)
     assert some.codes()[0, 0] == "1:c"
     plan = planner.plan(lesson, PASSABLE, START, int(found.variant[0, 0]))
-    assert planner.checker.explain(plan, PASSABLE) is not None
+    assert not planner.checker.free(plan.q, PASSABLE)
 
 
 def test_ompl_is_not_imported_before_it_is_needed() -> None:

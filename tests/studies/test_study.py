@@ -15,6 +15,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.commands.study_console import show_study
 from drake_screw.demonstrations import write_recording
 from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.planning import connection
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.studies.experiment import Experiment, run_seed, split
 from drake_screw.studies.hidden_failures import EACH, find_hidden_failures
@@ -22,6 +23,7 @@ from drake_screw.studies.study import (
     RUNS,
     STUDY,
     SUMMARY,
+    Study,
     new_study,
     numbers_of_regions,
     open_study,
@@ -233,6 +235,42 @@ def test_damaged_studies_are_refused(scenario, tmp_path, name, text, message) ->
         (path / name).write_text(text)
     with pytest.raises(RunDirectoryError, match=message):
         list(open_study(path).carry_out(1))
+
+
+@pytest.mark.parametrize(
+    ("before", "said"),
+    [(True, r"study.*begun with OMPL.*not installed now"), (False, r"begun without OMPL")],
+)
+def test_a_study_goes_on_only_where_the_arm_is_led_around_as_before(
+    scenario, tmp_path, monkeypatch, before, said
+) -> None:
+    monkeypatch.setattr(connection, "available", lambda: before)
+    planner = scenario.planner.model_copy(update={"approach": "free", "collision": True})
+    free = scenario.model_copy(update={"planner": planner})
+    path = new_study(free, (1,), 1, tmp_path / "study").path
+    stored = (path / STUDY).read_text()
+    assert json.loads(stored)["led_around"] is before
+    monkeypatch.setattr(connection, "available", lambda: not before)
+    with pytest.raises(RunDirectoryError, match=said) as error:
+        list(open_study(path).carry_out(1))
+    assert "begin the study again" in str(error.value.remedy).lower()
+    assert (path / STUDY).read_text() == stored
+
+
+def test_a_finished_study_or_one_from_before_ompl_was_noted_is_opened_anyway(
+    finished, monkeypatch
+) -> None:
+    assert finished.record["led_around"] is None
+    planner = finished.scenario.planner.model_copy(update={"approach": "free", "collision": True})
+    free = finished.scenario.model_copy(update={"planner": planner})
+    for before, runs in ((True, COUNT), (None, COUNT + 1)):
+        monkeypatch.setattr(connection, "available", lambda: False)
+        record = finished.record | {"led_around": before, "runs": runs}
+        study = Study(finished.path, free, record)
+        monkeypatch.setattr(Study, "_results", lambda *_: iter(()))
+        monkeypatch.setattr(Study, "_conclude", lambda _: None)
+        monkeypatch.setattr(Study, "_save", lambda *_: None)
+        assert list(study.carry_out(1)) == []
 
 
 def test_a_study_is_not_carried_on_with_another_robot(scenario, tmp_path) -> None:

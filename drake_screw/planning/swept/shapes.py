@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.geometry import GeometryId, Role
 from pydrake.multibody.tree import BodyIndex, RigidBody
+from scipy.spatial import QhullError
 
 from drake_screw.errors import ModelError
 from drake_screw.planning.swept.cell import Cell
@@ -35,7 +36,7 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
         The cell; of each of its pairs, those that stand last, which of `Workcell.pairs` it is of.
 
     Raises:
-        ModelError: a collision shape is of a kind that is not known here.
+        ModelError: a collision shape is of a kind that is not known here, or a flat mesh.
     """
     plant, arm = workcell.plant, workcell.arm
     inspector = workcell.scene_graph.model_inspector()
@@ -54,12 +55,20 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
     geometries = inspector.GetAllGeometryIds(Role.kProximity)
     for geometry in sorted(geometries, key=lambda one: last.get(body_of(one).index(), -1)):
         shape, body = inspector.GetShape(geometry), body_of(geometry)
-        core = core_of(shape)
+        try:
+            core = core_of(shape)
+        except QhullError as error:
+            raise ModelError(
+                f"this mesh is flat, and a collision shape of '{body.name()}'",
+                remedy="Give it some thickness, or take a thin box in its place.",
+                file=shape.source().path(),
+            ) from error
         if core is None:
             raise ModelError(
                 f"link '{body.name()}' has a collision shape of a kind that is not supported: "
                 f"{shape}",
                 remedy="Give it spheres, capsules, cylinders, boxes, ellipsoids or meshes.",
+                file=workcell.model_file,
             )
         index = body.index()
         X_RB = np.eye(4) if index in object_of else body.EvalPoseInWorld(context).GetAsMatrix4()

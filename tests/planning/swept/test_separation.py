@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,8 +24,8 @@ from pydrake.geometry import (
 from pydrake.geometry import FramePoseVector_ as FramePoses
 from pydrake.math import RigidTransform
 from scipy.optimize import nnls
-from scipy.spatial import ConvexHull
 
+from benchmarks.mesh_arm import write_obj
 from drake_screw.planning.swept.convex import BOX, HULL, POINT, SEGMENT
 from drake_screw.planning.swept.cores import Core, core_of, together
 from drake_screw.screws import exp, pose
@@ -40,18 +39,6 @@ DRAKES = 1e-3
 
 BALLS = 2e-5
 """m, of two of `convex.BALL`: as deep as that the upper bound tells."""
-
-
-def write_obj(file: Path, points: np.ndarray) -> Path:
-    """A mesh of the convex hull of points (c, 3)."""
-    hull = ConvexHull(points)
-    text = [f"v {x} {y} {z}" for x, y, z in points]
-    for face, equation in zip(hull.simplices, hull.equations, strict=True):
-        a, b, c = points[face]
-        outward = np.cross(b - a, c - a) @ equation[:3] > 0.0
-        text.append("f " + " ".join(str(i + 1) for i in (face if outward else face[::-1])))
-    file.write_text("\n".join(text) + "\n")
-    return file
 
 
 @pytest.fixture(scope="module")
