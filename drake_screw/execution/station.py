@@ -22,7 +22,13 @@ from pydrake.multibody.plant import (
     MultibodyPlant,
     MultibodyPlantConfig,
 )
-from pydrake.multibody.tree import ModelInstanceIndex, PdControllerGains, RigidBody
+from pydrake.multibody.tree import (
+    JointActuator,
+    JointIndex,
+    ModelInstanceIndex,
+    PdControllerGains,
+    RigidBody,
+)
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 from pydrake.systems.primitives import (
     Adder,
@@ -34,6 +40,7 @@ from pydrake.systems.primitives import (
 
 from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
+from drake_screw.execution.wiring import desired_state, joint_places, measured_state
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.robot.tool import let_touch
@@ -140,16 +147,13 @@ def build_station(
     follower = builder.AddNamedSystem(
         "executor", ScrewPlanExecutor(arm) if follow_screws else JointPathSource(arm)
     )
-    columns, parked = _joints(plant, instance, arm)
-    N, n = len(parked), arm.n
-    pick = np.zeros((2 * n, 2 * N))
-    pick[np.arange(n), columns] = pick[n + np.arange(n), N + columns] = 1.0
-    rest = np.concatenate([parked, np.zeros(N)])
-    rest[columns] = 0.0
-    measure = builder.AddNamedSystem("arm_of_robot", MatrixGain(pick))
-    spread = builder.AddNamedSystem("robot_of_arm", MatrixGain(pick.T))
+    columns, parked = joint_places(plant, instance, arm)
+    to_motors, rest = desired_state(plant, instance, arm, parked)
+    of_arm = measured_state(plant, instance, arm)
+    measure = builder.AddNamedSystem("arm_of_robot", MatrixGain(of_arm))
+    spread = builder.AddNamedSystem("robot_of_arm", MatrixGain(to_motors))
     idle = builder.AddNamedSystem("idle_joints", ConstantVectorSource(rest))
-    command = builder.AddNamedSystem("joint_command", Adder(2, 2 * N))
+    command = builder.AddNamedSystem("joint_command", Adder(2, len(rest)))
     builder.Connect(plant.get_state_output_port(instance), measure.get_input_port())
     builder.Connect(measure.get_output_port(), follower.GetInputPort("measured_state"))
     builder.Connect(follower.GetOutputPort("desired_state"), spread.get_input_port())
@@ -177,10 +181,10 @@ def build_station(
 
 def _motorise(plant: MultibodyPlant, robot: ModelInstanceIndex) -> None:
     """Position control of every joint with one degree of freedom, within the model's efforts."""
-    driven = {}
+    driven: dict[JointIndex, JointActuator] = {}
     for index in plant.GetJointActuatorIndices():
         actuator = plant.get_joint_actuator(index)
-        driven[actuator.joint().index()] = actuator
+        driven.setdefault(actuator.joint().index(), actuator)
     for index in plant.GetJointIndices(robot):
         joint = plant.get_joint(index)
         if joint.num_velocities() != 1:
@@ -212,20 +216,3 @@ def _kinematics(robot: RobotConfig) -> Arm:
     add_robot(Parser(plant), robot)
     plant.Finalize()
     return Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
-
-
-def _joints(plant: MultibodyPlant, robot: ModelInstanceIndex, arm: Arm) -> tuple[Array, Array]:
-    """Where the arm's joints stand among the robot's, and where those rest."""
-    place = plant.GetPositionsFromArray(robot, np.arange(plant.num_positions(), dtype=float))
-    columns = [
-        int(np.flatnonzero(place == plant.GetJointByName(name, robot).position_start())[0])
-        for name in arm.joint_names
-    ]
-    resting = arm.full_positions(np.zeros(arm.n))
-    parked = np.zeros(len(place))
-    for index in plant.GetJointIndices(robot):
-        joint = plant.get_joint(index)
-        if joint.num_positions() == 1:
-            own = arm.plant.GetJointByName(joint.name()).position_start()
-            parked[place == joint.position_start()] = resting[own]
-    return np.array(columns), parked
