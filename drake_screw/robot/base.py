@@ -213,15 +213,15 @@ def between_links(joint: Joint) -> RigidTransform:
 
 
 def _move(trees: Trees, X_WS: RigidTransform) -> None:
-    """Move all that is fixed to the world."""
+    """Move all that is fixed to the world; shapes of the world itself cannot be."""
     if X_WS.IsNearlyEqualTo(RigidTransform(), SAME):
         return
     plant, world = trees.plant, trees.plant.world_body()
     if plant.GetCollisionGeometriesForBody(world) or plant.GetVisualGeometriesForBody(world):
         raise ModelError(
-            "the model has shapes that are fixed to the world, so its base cannot be moved there",
-            remedy=f"Leave the model where it is, with base: {WORLD}, or give those shapes to a "
-            "link of their own.",
+            "the model has shapes that are fixed to the world, which cannot be moved with its base",
+            remedy=f"Leave the model where it is, with base: {WORLD}, or give those shapes a body "
+            "of their own.",
         )
     for joint in list(trees.above.values()):
         if joint.parent_body().index() != world.index():
