@@ -90,6 +90,7 @@ class Recorder:
             (0.0,) * len(block.joints),
             block.base,
             block.parked,
+            packages=block.packages,
         )
         plant = MultibodyPlant(0.0)
         try:

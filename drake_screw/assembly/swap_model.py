@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from dataclasses import replace
 from pathlib import Path
 
 from pydrake.multibody.parsing import Parser
@@ -26,12 +28,13 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
         ModelError: the model cannot be read or lacks the base, or it is one of the robot that the
             recordings were made on.
     """
-    block = scenario.robot.model_copy(update={"model": str(Path(model).resolve())})
+    text = os.fspath(model)
+    place = text if "://" in text else str(Path(model).resolve())
+    block = scenario.robot.model_copy(update={"model": place})
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
-    _, instance, _ = add_robot(
-        parser, RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
-    )
+    config = RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
+    _, instance, _ = add_robot(parser, replace(config, packages=block.packages))
     names = {plant.get_joint(i).name() for i in plant.GetJointIndices()}
     other = scenario.recorded_on
     if other is not None and set(other.joints) <= names and not set(block.joints) <= names:

@@ -15,10 +15,11 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
 
 from drake_screw.errors import ModelError, unknown
-from drake_screw.resources import MODEL_SUFFIXES, find_resource
+from drake_screw.robot.addresses import add_packages
 from drake_screw.robot.model_text import check_collision_shapes
 from drake_screw.robot.names import check_apart
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
+from drake_screw.robot.packages import ModelPlace
 from drake_screw.robot.shapes import register
 from drake_screw.robot.tool import ToolConfig, add_tool
 
@@ -37,6 +38,7 @@ class RobotConfig:
     base: str = "base"
     parked: Mapping[str, float] = field(default_factory=dict)
     tool: ToolConfig | None = None
+    packages: Mapping[str, Path] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -76,8 +78,11 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
             collision shape that Drake would not take as it is.
     """
     plant = parser.plant()
-    file = find_resource("models", robot.model, MODEL_SUFFIXES)
+    place = ModelPlace(robot.model, robot.packages)
+    file = place.file
     check_collision_shapes(file)
+    meshes = plant.geometry_source_is_registered()
+    add_packages(parser.package_map(), file, place.packages, meshes=meshes)
     try:
         instance = parser.AddModels(str(file))[0]
     except (RuntimeError, ValueError, SystemExit) as error:

@@ -17,6 +17,7 @@ from drake_screw.scenario.values import (
     Interval,
     ModelName,
     Name,
+    Packages,
     Positive,
 )
 from drake_screw.tasks import AXES, Symmetry
@@ -24,7 +25,8 @@ from drake_screw.tasks import AXES, Symmetry
 
 class RobotBlock(Block):
     model: ModelName
-    """shipped model's name, or the path of a model file, relative to the scenario file"""
+    """shipped model's name, or the path of a model file, relative to the scenario file, or its
+    address in a package, `package://NAME/...`"""
     joints: tuple[str, ...]
     """names of the arm's joints, from base to end effector"""
     end_effector: str
@@ -37,6 +39,9 @@ class RobotBlock(Block):
     """where other joints rest; joints not named rest at the model's default"""
     tool: ToolBlock | None = None
     """what the end effector holds"""
+    packages: Packages = Field(default={})
+    """folders of packages that the model speaks of as `package://NAME/...` and that are not found
+    by themselves"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
@@ -50,7 +55,8 @@ class RobotBlock(Block):
 
 class RecordedOnBlock(Block):
     model: ModelName
-    """shipped model's name, or the path of a model file, relative to the scenario file"""
+    """shipped model's name, or the path of a model file, relative to the scenario file, or its
+    address in a package, `package://NAME/...`"""
     joints: tuple[str, ...]
     """names of that arm's joints, from base to end effector; the recordings have a column for
     each"""
@@ -60,6 +66,8 @@ class RecordedOnBlock(Block):
     """name of the frame in which the recordings have the objects' poses; its z points up"""
     parked: Annotated[Angles, RADIANS] = Field(default={})
     """where other joints rested; joints not named rested at the model's default"""
+    packages: Packages = Field(default={})
+    """folders of packages that the model speaks of"""
 
     def broken_rules(self) -> Iterator[Problem]:
         remedy = "Its angles are in the recordings; leave it out."
