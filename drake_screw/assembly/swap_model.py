@@ -12,6 +12,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from drake_screw.errors import ModelError
 from drake_screw.robot import RobotConfig
 from drake_screw.robot.parts import add_robot
+from drake_screw.robot.xacro_text import SUFFIX
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
 
@@ -33,8 +34,10 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     block = scenario.robot.model_copy(update={"model": place})
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
+    xacro = block.xacro if place.endswith(SUFFIX) else {}
+    block = block.model_copy(update={"xacro": xacro})
     config = RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
-    _, instance, _ = add_robot(parser, replace(config, packages=block.packages))
+    _, instance, _ = add_robot(parser, replace(config, packages=block.packages, xacro=xacro))
     names = {plant.get_joint(i).name() for i in plant.GetJointIndices()}
     other = scenario.recorded_on
     if other is not None and set(other.joints) <= names and not set(block.joints) <= names:

@@ -31,6 +31,7 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         block.parked,
         tool_config(scenario),
         packages=block.packages,
+        xacro=block.xacro,
     )
 
 

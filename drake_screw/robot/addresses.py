@@ -42,7 +42,8 @@ def add_packages(drake: PackageMap, file: Path, packages: Packages, *, meshes: b
             continue
         seen.add(model)
         shapes, included = addresses(model)
-        packages = replace(packages, near=model)
+        if model != file:
+            packages = replace(packages, near=model)
         for address in (*included, *(shapes if meshes else ())):
             split = split_address(address)
             if split is not None and not drake.Contains(split[0]):

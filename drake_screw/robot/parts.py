@@ -16,7 +16,7 @@ from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
 
 from drake_screw.errors import ModelError, unknown
 from drake_screw.robot.addresses import add_packages
-from drake_screw.robot.model_text import check_collision_shapes
+from drake_screw.robot.model_file import ModelFile, model_file
 from drake_screw.robot.names import check_apart
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
 from drake_screw.robot.packages import ModelPlace
@@ -39,6 +39,7 @@ class RobotConfig:
     parked: Mapping[str, float] = field(default_factory=dict)
     tool: ToolConfig | None = None
     packages: Mapping[str, Path] = field(default_factory=dict)
+    xacro: Mapping[str, object] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -61,9 +62,9 @@ class ObjectConfig:
 
 
 class RobotInPlant(NamedTuple):
-    """A robot that was added to a plant: its model's file, its instance, and the body it holds."""
+    """A robot that was added to a plant: its model, its instance, and the body it holds."""
 
-    file: Path
+    model: ModelFile
     instance: ModelInstanceIndex
     tool: RigidBody | None
 
@@ -79,12 +80,12 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     """
     plant = parser.plant()
     place = ModelPlace(robot.model, robot.packages)
-    file = place.file
-    check_collision_shapes(file)
-    meshes = plant.geometry_source_is_registered()
-    add_packages(parser.package_map(), file, place.packages, meshes=meshes)
+    shapes = plant.geometry_source_is_registered()
+    model = model_file(place, robot.xacro, shapes=shapes)
+    file = model.file
+    add_packages(parser.package_map(), model.read, place.packages, meshes=shapes)
     try:
-        instance = parser.AddModels(str(file))[0]
+        instance = parser.AddModels(str(model.read))[0]
     except (RuntimeError, ValueError, SystemExit) as error:
         raise ModelError(f"Drake cannot read this model: {error}", file=file) from error
     names = [plant.get_body(i).name() for i in plant.GetBodyIndices(instance)]
@@ -99,7 +100,7 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     if robot.base not in welded:
         plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(robot.base, instance))
     tool = None if robot.tool is None else add_tool(plant, instance, robot.tool)
-    return RobotInPlant(file, instance, tool)
+    return RobotInPlant(model, instance, tool)
 
 
 def add_surroundings(

@@ -22,6 +22,7 @@ from pydrake.planning import (
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.arm import Arm
+from drake_screw.robot.model_file import ModelFile
 from drake_screw.robot.obstacles import ObstacleConfig
 from drake_screw.robot.parts import (
     ObjectConfig,
@@ -51,7 +52,7 @@ class Workcell:
         start: (n,) rad, its start configuration.
         objects: the objects' bodies.
         robot: the model instance of the robot, and of what it holds.
-        model_file: where the robot was read from.
+        model: what the robot was read from.
         checker: looks at collisions.
         obstacles: the obstacles' bodies.
         tool: the body of what the end effector holds, if that has a shape.
@@ -64,10 +65,15 @@ class Workcell:
     start: Array
     objects: tuple[RigidBody, ...]
     robot: ModelInstanceIndex
-    model_file: Path
+    model: ModelFile
     checker: SceneGraphCollisionChecker
     obstacles: tuple[RigidBody, ...] = ()
     tool: RigidBody | None = None
+
+    @property
+    def model_file(self) -> Path:
+        """Where the robot was read from."""
+        return self.model.file
 
     def positions(self, q: ArrayLike, X_WO: ArrayLike) -> Array:
         """Positions of the whole plant.
@@ -174,7 +180,7 @@ def build_workcell(
     """
     builder = RobotDiagramBuilder(time_step=0.0)
     plant: MultibodyPlant = builder.plant()
-    model_file, instance, tool = add_robot(builder.parser(), robot)
+    model, instance, tool = add_robot(builder.parser(), robot)
     fixed, bodies = add_surroundings(plant, table, objects, obstacles)
     plant.Finalize()
     arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
@@ -193,7 +199,7 @@ def build_workcell(
     )
     start = np.array(robot.start, dtype=float)
     workcell = Workcell(
-        diagram, plant, scene_graph, arm, start, bodies, instance, model_file, checker, fixed, tool
+        diagram, plant, scene_graph, arm, start, bodies, instance, model, checker, fixed, tool
     )
     _check_planes(workcell)
     return workcell

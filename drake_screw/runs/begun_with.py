@@ -17,14 +17,23 @@ def model_files(setup: Setup) -> dict[str, Path]:
     return models | ({} if other is None else {"recorded_on": other}) | setup.meshes
 
 
+def model_hashes(setup: Setup) -> dict[str, str]:
+    """Of what was read of each of `model_files`: of a model in xacro, what it stands for."""
+    other = setup.recorder.model
+    found = {"model": setup.workcell.model.hash}
+    found |= {} if other is None else {"recorded_on": other.hash}
+    return found | {name: file_hash(file) for name, file in setup.meshes.items()}
+
+
 def check_models(setup: Setup, directory: RunDirectory) -> None:
     """Refuse models and meshes that are not what they were.
 
     Raises:
         RunDirectoryError: one has changed.
     """
+    now = model_hashes(setup)
     for name, file in model_files(setup).items():
-        if file_hash(file) != directory.record.hashes.get(name):
+        if now[name] != directory.record.hashes.get(name):
             what = "mesh" if name in setup.meshes else "robot model"
             raise RunDirectoryError(
                 f"the {what} {file} has changed since this run",

@@ -17,6 +17,7 @@ from drake_screw.scenario.values import (
     Interval,
     ModelName,
     Name,
+    Options,
     Packages,
     Positive,
 )
@@ -42,6 +43,8 @@ class RobotBlock(Block):
     packages: Packages = Field(default={})
     """folders of packages that the model speaks of as `package://NAME/...` and that are not found
     by themselves"""
+    xacro: Options = Field(default={})
+    """arguments of a model that is written in xacro"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
@@ -68,6 +71,8 @@ class RecordedOnBlock(Block):
     """where other joints rested; joints not named rested at the model's default"""
     packages: Packages = Field(default={})
     """folders of packages that the model speaks of"""
+    xacro: Options = Field(default={})
+    """arguments of a model that is written in xacro"""
 
     def broken_rules(self) -> Iterator[Problem]:
         remedy = "Its angles are in the recordings; leave it out."

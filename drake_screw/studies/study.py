@@ -16,6 +16,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
+from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.files import (
     csv_text,
@@ -206,9 +207,7 @@ def new_study(
         "seed": scenario.seed,
         "strategy": scenario.coverage.strategy,
         "model": str(model),
-        "hashes": {
-            name: file_hash(file) for name, file in ({"model": model} | setup.meshes).items()
-        },
+        "hashes": _hashes(setup),
         "led_around": setup.leads_around,
         "versions": versions(),
         "started": now(),
@@ -253,8 +252,9 @@ def open_study(path: PathLike) -> Study:
         )
     study = Study(path, load_stored_scenario(path / SCENARIO), record)
     setup = study.experiment.setup
+    now = _hashes(setup)
     for name, used in ({"model": setup.workcell.model_file} | setup.meshes).items():
-        if file_hash(used) != hashes.get(name):
+        if now[name] != hashes.get(name):
             what = "mesh" if name in setup.meshes else "robot model"
             raise RunDirectoryError(
                 f"the {what} {used} has changed since this study began",
@@ -262,6 +262,12 @@ def open_study(path: PathLike) -> Study:
                 file=path,
             )
     return study
+
+
+def _hashes(setup: PlanningSetup) -> dict[str, str]:
+    """Of what was read of the robot's model, and of the meshes around it."""
+    meshes = {name: file_hash(file) for name, file in setup.meshes.items()}
+    return {"model": setup.workcell.model.hash} | meshes
 
 
 def numbers_of_regions(text: str) -> tuple[int, ...]:

@@ -1,0 +1,109 @@
+"""A robot's model made ready for Drake: found, expanded, its meshes in formats that are read."""
+
+from __future__ import annotations
+
+import hashlib
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from drake_screw.errors import ModelError
+from drake_screw.files import cache_folder, file_hash, write_text
+from drake_screw.robot.model_meshes import LeftOut, MeshesRead, make_absolute, read_meshes
+from drake_screw.robot.model_text import check_collision_shapes
+from drake_screw.robot.model_xml import model_xml, parse_model
+from drake_screw.robot.packages import ModelPlace
+from drake_screw.robot.xacro_text import SUFFIX, expand
+
+KINDS = {"robot": ".urdf", "sdf": ".sdf"}
+"""Suffixes that Drake knows models by, by their root element."""
+
+
+@dataclass(frozen=True)
+class ModelFile:
+    """A model as the user has it, and as Drake reads it.
+
+    Attributes:
+        file: the user's.
+        read: which Drake is to read: the same where nothing has to be changed.
+        hash: of what was read; that of the file's contents where Drake reads it as it is.
+        left_out: shapes whose meshes cannot be had.
+    """
+
+    file: Path
+    read: Path
+    hash: str
+    left_out: tuple[LeftOut, ...] = ()
+
+    @property
+    def incomplete(self) -> tuple[str, ...]:
+        """Links that lack a collision shape."""
+        return tuple(dict.fromkeys(s.link for s in self.left_out if s.role == "collision"))
+
+
+def model_file(
+    place: ModelPlace, arguments: Mapping[str, object] | None = None, *, shapes: bool = True
+) -> ModelFile:
+    """Make a model ready for Drake.
+
+    What has to be changed in its text is changed in a copy in the cache folder.
+
+    Args:
+        place: where it is.
+        arguments: of a model in xacro.
+        shapes: whether its meshes matter; for kinematics alone they do not.
+
+    Raises:
+        ModelError: it cannot be found or expanded, has a collision shape that Drake would take for
+            another one, or speaks of a package that is not found.
+    """
+    file, arguments = place.file, arguments or {}
+    is_xacro = file.suffix.lower() == SUFFIX
+    if arguments and not is_xacro:
+        raise ModelError(
+            f"arguments for xacro ({', '.join(arguments)}), but the model is not written in xacro",
+            remedy=f"Leave `xacro` out, or name the {SUFFIX} file.",
+            file=file,
+        )
+    if not is_xacro and file.suffix.lower() not in KINDS.values():
+        return ModelFile(file, file, file_hash(file))
+    try:
+        text = expand(file, arguments, place.packages) if is_xacro else file.read_bytes()
+        root = parse_model(text)
+    except (ET.ParseError, OSError) as error:
+        if is_xacro:
+            raise ModelError(f"expanded, it is not XML: {error}", file=file) from error
+        return ModelFile(file, file, file_hash(file))
+    check_collision_shapes(root, file)
+    if is_xacro and root.tag not in KINDS:
+        raise ModelError(
+            f"expanded, it is a '{root.tag}' and no robot",
+            remedy="Name the file that describes the whole robot; files of macros alone do not.",
+            file=file,
+        )
+    original = model_xml(root)
+    meshes = read_meshes(root, file.parent, place.packages) if shapes else MeshesRead()
+    if not is_xacro and not meshes.changed:
+        return ModelFile(file, file, file_hash(file))
+    make_absolute(root, file.parent, place.packages)
+    suffix = KINDS.get(root.tag, file.suffix.lower())
+    hash = file_hash(file) if not is_xacro else hashlib.sha256(original.encode()).hexdigest()
+    missing = [(s.link, s.mesh, "") for s in meshes.left_out if s.role == "collision"]
+    if missing or meshes.converted:
+        told = [hash, *("\0".join(entry) for entry in (*missing, *meshes.converted))]
+        hash = hashlib.sha256("\n".join(told).encode()).hexdigest()
+    return ModelFile(file, _kept(model_xml(root), f"{_stem(file)}{suffix}"), hash, meshes.left_out)
+
+
+def _stem(file: Path) -> str:
+    return file.name.split(".")[0]
+
+
+def _kept(text: str, name: str) -> Path:
+    folder = cache_folder() / "models" / hashlib.sha256(text.encode()).hexdigest()[:32]
+    folder.mkdir(parents=True, exist_ok=True)
+    kept = folder / name
+    if not kept.is_file():
+        write_text(kept, text)
+    return kept
