@@ -81,7 +81,8 @@ def addresses(file: Path) -> tuple[list[str], list[str]]:
         root = ET.parse(file).getroot()
     except (ET.ParseError, OSError, UnicodeDecodeError):
         return [], []
-    meshes = [e.get("filename") or e.findtext("uri") or "" for e in root.iter("mesh")]
+    looks = (*root.iter("mesh"), *root.iter("texture"))
+    meshes = [e.get("filename") or e.findtext("uri") or "" for e in looks]
     included = [e.findtext("uri") or "" for e in root.iter("include")]
     return [m.strip() for m in meshes if m], [i.strip() for i in included if i]
 

@@ -25,7 +25,7 @@ MOST_FACES = 8_000
 CELLS = 128
 """Cells along the longest side of a mesh to be coarsened, to begin with."""
 
-_VERSION = "1"
+_VERSION = "2"
 """Of what is made of a mesh: a new number makes it all again."""
 
 _log = logging.getLogger(__name__)
@@ -76,6 +76,7 @@ def look_file(file: Path) -> Path:
         share = MOST_FACES / max(sum(len(part.faces) for part in parts), 1)
         if share < 1.0:
             parts = [_coarser(part, max(int(share * len(part.faces)), 100)) for part in parts]
+        parts = [_merged(part) for part in parts]
         colors = [part.color for part in parts]
         if any(color is not None for color in colors):
             write_text(kept.with_suffix(".mtl"), "".join(_materials(colors)))
@@ -174,6 +175,12 @@ def _coarser(part: _Part, most: int) -> _Part:
             np.add.at(middle, into, part.vertices)
             return _Part(middle / count[:, None], faces, part.color)
         cells = int(cells * 0.8)
+
+
+def _merged(part: _Part) -> _Part:
+    """The same with every vertex once."""
+    vertices, into = np.unique(part.vertices, axis=0, return_inverse=True)
+    return part._replace(vertices=vertices, faces=into.reshape(-1)[part.faces])
 
 
 def _lines(parts: list[_Part], materials: str | None = None) -> Iterator[str]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from drake_screw.errors import ModelError
 from drake_screw.files import cache_folder, file_hash, write_text
+from drake_screw.robot.model_materials import mend_materials
 from drake_screw.robot.model_meshes import LeftOut, MeshesRead, make_absolute, read_meshes
 from drake_screw.robot.model_text import check_collision_shapes
 from drake_screw.robot.model_xml import model_xml, parse_model
@@ -18,6 +20,8 @@ from drake_screw.robot.xacro_text import SUFFIX, expand
 
 KINDS = {"robot": ".urdf", "sdf": ".sdf"}
 """Suffixes that Drake knows models by, by their root element."""
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,16 @@ class ModelFile:
     def incomplete(self) -> tuple[str, ...]:
         """Links that lack a collision shape."""
         return tuple(dict.fromkeys(s.link for s in self.left_out if s.role == "collision"))
+
+    @property
+    def collision_left_out(self) -> int:
+        """How many collision shapes are left out."""
+        return sum(s.role == "collision" for s in self.left_out)
+
+    @property
+    def looks_left_out(self) -> tuple[LeftOut, ...]:
+        """Shapes that are not shown."""
+        return tuple(s for s in self.left_out if s.role == "visual")
 
 
 def model_file(
@@ -84,8 +98,11 @@ def model_file(
         )
     original = model_xml(root)
     meshes = read_meshes(root, file.parent, place.packages) if shapes else MeshesRead()
-    if not is_xacro and not meshes.changed:
+    changed = shapes and root.tag == "robot" and mend_materials(root, _has_file(place))
+    if not is_xacro and not meshes.changed and not changed:
         return ModelFile(file, file, file_hash(file))
+    for shape in meshes.left_out:
+        _log.info("%s: %s shape left out: %s", file, shape.role, shape)
     make_absolute(root, file.parent, place.packages)
     suffix = KINDS.get(root.tag, file.suffix.lower())
     hash = file_hash(file) if not is_xacro else hashlib.sha256(original.encode()).hexdigest()
@@ -94,6 +111,16 @@ def model_file(
         told = [hash, *("\0".join(entry) for entry in (*missing, *meshes.converted))]
         hash = hashlib.sha256("\n".join(told).encode()).hexdigest()
     return ModelFile(file, _kept(model_xml(root), f"{_stem(file)}{suffix}"), hash, meshes.left_out)
+
+
+def _has_file(place: ModelPlace) -> Callable[[str], bool]:
+    def has_file(address: str) -> bool:
+        try:
+            return place.packages.path(address, place.file.parent).is_file()
+        except ModelError:
+            return False
+
+    return has_file
 
 
 def _stem(file: Path) -> str:

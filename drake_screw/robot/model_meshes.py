@@ -86,14 +86,14 @@ def read_meshes(root: ET.Element, folder: Path, packages: Packages) -> MeshesRea
 
 def make_absolute(root: ET.Element, folder: Path, packages: Packages) -> None:
     """Write out where the files are that a model names, so that its text may be put anywhere."""
-    for element in (*root.iter("mesh"), *root.iter("include")):
+    for element in (*root.iter("mesh"), *root.iter("texture"), *root.iter("include")):
         address = address_of(element)
         if address and "://" not in address:
             set_address(element, str(packages.path(address, folder)))
 
 
 def address_of(element: ET.Element) -> str:
-    """The address of a mesh, or of a model that is included."""
+    """The address of a mesh, a texture, or a model that is included."""
     return (element.get("filename") or element.findtext("uri") or "").strip()
 
 
