@@ -36,6 +36,8 @@ from drake_screw.robot import (
     Workcell,
     build_workcell,
 )
+from drake_screw.robot.packages import ModelPlace
+from drake_screw.robot.srdf import srdf_file
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, WorkArea
 
@@ -93,6 +95,14 @@ class PlanningSetup:
         check_start_is_free(self.scenario, workcell)
         check_reach(self.scenario, workcell.arm, self.area)
         return workcell
+
+    @property
+    def srdf(self) -> dict[str, Path]:
+        """The robot's SRDF file, by its place in the scenario, if it has one."""
+        if self.robot.srdf is None:
+            return {}
+        packages = ModelPlace(self.robot.model, self.robot.packages).packages
+        return {"robot.srdf": srdf_file(self.robot.srdf, packages)}
 
     @property
     def meshes(self) -> dict[str, Path]:

@@ -46,6 +46,7 @@ class Preview:
         covered: obstacles in the work area.
         unseen: collision shapes of the robot that cannot be had, a line each.
         not_shown: looks of the robot that cannot be had, likewise, in one line.
+        unknown_links: named as links that may touch, and not in the model.
         freedoms: symmetries that are taken for granted.
         approach: how the arm comes to the first guiding pose, "screw" or "free".
         regions: how many; None where they are adaptive.
@@ -78,6 +79,7 @@ class Preview:
     covered: tuple[Covered, ...]
     unseen: tuple[str, ...]
     not_shown: str | None
+    unknown_links: tuple[str, ...]
     freedoms: tuple[Freedom, ...]
     approach: str
     regions: int | None
@@ -145,6 +147,8 @@ class Preview:
             yield from (("", f"  {line}") for line in self.unseen)
         if self.not_shown is not None:
             yield "note", self.not_shown
+        if self.unknown_links:
+            yield "note", f"links that the robot's model lacks: {', '.join(self.unknown_links)}"
         if self.lacks_ompl:
             yield "note", connection.ABSENT
         rate = self.plans_per_second
@@ -193,6 +197,7 @@ def preview(scenario: Scenario) -> Preview:
         covered=covered_by_obstacles(setup.workcell, setup.area),
         unseen=missing_shapes(setup.workcell),
         not_shown=not_shown(setup.workcell),
+        unknown_links=setup.workcell.unknown_links,
         freedoms=freedoms(scenario),
         approach=scenario.planner.approach,
         regions=setup.regions.K if tree is None else None,

@@ -32,6 +32,7 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         tool_config(scenario),
         packages=block.packages,
         xacro=block.xacro,
+        srdf=block.srdf,
     )
 
 

@@ -35,6 +35,7 @@ from pydrake.systems.primitives import (
 from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.robot.ignored import ignore, ignored_pairs
 from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.robot.tool import let_touch
 from drake_screw.typing import Array
@@ -134,6 +135,7 @@ def build_station(
     plant.set_gravity_enabled(instance, False)
     plant.Finalize()
     _ignore_contacts_of_objects(plant, scene_graph, instance)
+    ignore(plant, scene_graph, [instance], ignored_pairs(robot))
     if robot.tool is not None and tool is not None:
         let_touch(plant, scene_graph, tool, robot.tool.touches)
     arm = _kinematics(robot)

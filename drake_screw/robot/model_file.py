@@ -98,7 +98,7 @@ def model_file(
         )
     original = model_xml(root)
     meshes = read_meshes(root, file.parent, place.packages) if shapes else MeshesRead()
-    changed = shapes and root.tag == "robot" and mend_materials(root, _has_file(place))
+    changed = _mend(root, place, shapes=shapes) if root.tag == "robot" else False
     if not is_xacro and not meshes.changed and not changed:
         return ModelFile(file, file, file_hash(file))
     for shape in meshes.left_out:
@@ -111,6 +111,30 @@ def model_file(
         told = [hash, *("\0".join(entry) for entry in (*missing, *meshes.converted))]
         hash = hashlib.sha256("\n".join(told).encode()).hexdigest()
     return ModelFile(file, _kept(model_xml(root), f"{_stem(file)}{suffix}"), hash, meshes.left_out)
+
+
+def _mend(root: ET.Element, place: ModelPlace, *, shapes: bool) -> bool:
+    """Mend what Drake refuses a URDF for though it is of no matter; whether there was anything."""
+    changed = shapes and mend_materials(root, _has_file(place))
+    if not root.get("name"):
+        root.set("name", _stem(place.file))
+        changed = True
+    joints = {joint.get("name"): joint.get("type") for joint in root.iterfind("joint")}
+    for joint in root.iterfind("joint"):
+        mimic = joint.find("mimic")
+        if mimic is not None and joint.get("type") == "fixed":
+            joint.remove(mimic)
+            changed = True
+        elif mimic is not None and joints.get(mimic.get("joint")) in (None, "fixed"):
+            joint.remove(mimic)
+            changed = True
+            _log.warning(
+                "%s: joint '%s' is to follow '%s', which does not move; it is held instead",
+                place.file,
+                joint.get("name"),
+                mimic.get("joint"),
+            )
+    return changed
 
 
 def _has_file(place: ModelPlace) -> Callable[[str], bool]:

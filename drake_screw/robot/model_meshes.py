@@ -10,7 +10,7 @@ from typing import Literal
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.mesh_files import content_hash, hull_file, look_file
-from drake_screw.robot.packages import Packages
+from drake_screw.robot.packages import Packages, split_address
 from drake_screw.robot.shapes import MESH_SUFFIXES
 
 Role = Literal["collision", "visual"]
@@ -68,7 +68,7 @@ def read_meshes(root: ET.Element, folder: Path, packages: Packages) -> MeshesRea
     for link, role, shape, mesh in list(_meshes(root)):
         address = address_of(mesh)
         name = link.get("name", "")
-        file = packages.path(address, folder)
+        file = None if _leads_nowhere(address) else packages.path(address, folder)
         try:
             read = _readable(file, role)
         except ModelError as error:
@@ -79,7 +79,7 @@ def read_meshes(root: ET.Element, folder: Path, packages: Packages) -> MeshesRea
         if read != file:
             set_address(mesh, str(read))
             changed = True
-            if role == "collision":
+            if role == "collision" and file is not None:
                 converted.append((name, address, content_hash(file)))
     return MeshesRead(tuple(left_out), tuple(converted), changed)
 
@@ -116,8 +116,18 @@ def _meshes(root: ET.Element) -> Iterator[tuple[ET.Element, Role, ET.Element, ET
                     yield link, role, shape, mesh
 
 
-def _readable(file: Path, role: Role) -> Path:
+def _leads_nowhere(address: str) -> bool:
+    """Whether an address names no package, or is of a kind that nobody follows."""
+    split = split_address(address)
+    if split is not None:
+        return not split[0]
+    return "://" in address and not address.startswith("file://")
+
+
+def _readable(file: Path | None, role: Role) -> Path:
     """A file with the mesh, or its hull where that is what matters, that Drake reads."""
+    if file is None:
+        raise ModelError("is at an address that leads nowhere")
     if not file.is_file():
         raise ModelError("does not exist")
     if file.suffix.lower() in MESH_SUFFIXES:

@@ -90,13 +90,13 @@ class Packages:
             ModelError: it is of a package that is not found, or of another scheme.
         """
         split = split_address(address)
-        if split is not None:
+        if split is not None and split[0]:
             return self.folder(split[0]) / split[1]
         if address.startswith("file://"):
             return Path("/" + unquote(address.removeprefix("file://")).lstrip("/"))
         if "://" in address:
             raise ModelError(
-                f"'{address}' is no address that can be read",
+                f"'{address}' is no address of a file",
                 remedy="Use a path, or an address that begins with package://, model:// or file://",
                 file=self.near,
             )

@@ -40,6 +40,7 @@ class RobotConfig:
     tool: ToolConfig | None = None
     packages: Mapping[str, Path] = field(default_factory=dict)
     xacro: Mapping[str, object] = field(default_factory=dict)
+    srdf: str | None = None
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from pydrake.planning import (
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.arm import Arm
+from drake_screw.robot.ignored import ignore, ignored_pairs
 from drake_screw.robot.model_file import ModelFile
 from drake_screw.robot.obstacles import ObstacleConfig
 from drake_screw.robot.parts import (
@@ -56,6 +57,7 @@ class Workcell:
         checker: looks at collisions.
         obstacles: the obstacles' bodies.
         tool: the body of what the end effector holds, if that has a shape.
+        unknown_links: named among the pairs that may touch, but none of the robot's.
     """
 
     diagram: RobotDiagram
@@ -69,6 +71,7 @@ class Workcell:
     checker: SceneGraphCollisionChecker
     obstacles: tuple[RigidBody, ...] = ()
     tool: RigidBody | None = None
+    unknown_links: tuple[str, ...] = ()
 
     @property
     def model_file(self) -> Path:
@@ -192,6 +195,7 @@ def build_workcell(
     if robot.tool is not None and tool is not None:
         arm.held(robot.tool.frame)
         let_touch(plant, scene_graph, tool, robot.tool.touches)
+    unknown_links = ignore(plant, scene_graph, [instance], ignored_pairs(robot))
     diagram = builder.Build()
     arm.owner = diagram
     checker = SceneGraphCollisionChecker(
@@ -199,7 +203,18 @@ def build_workcell(
     )
     start = np.array(robot.start, dtype=float)
     workcell = Workcell(
-        diagram, plant, scene_graph, arm, start, bodies, instance, model, checker, fixed, tool
+        diagram,
+        plant,
+        scene_graph,
+        arm,
+        start,
+        bodies,
+        instance,
+        model,
+        checker,
+        fixed,
+        tool,
+        unknown_links,
     )
     _check_planes(workcell)
     return workcell

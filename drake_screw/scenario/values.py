@@ -125,6 +125,10 @@ def _model(value: Any) -> Any:
     return _absolute(value) if is_path and "://" not in value else value
 
 
+def _address(value: Any) -> Any:
+    return _absolute(value) if isinstance(value, str) and value and "://" not in value else value
+
+
 def _nothing_is_empty(value: Any) -> Any:
     return {} if value is None else value
 
@@ -137,6 +141,14 @@ ModelName = Annotated[
 ]
 """The name of a shipped model, or the path of one, or its address in a package; a relative path
 becomes absolute."""
+
+Address = Annotated[
+    str,
+    BeforeValidator(_address),
+    Field(min_length=1),
+    WithJsonSchema({"type": "string", "minLength": 1, "title": "a path or address"}),
+]
+"""The path of a file, absolute likewise, or its address in a package."""
 
 Folder = Annotated[Path, BeforeValidator(_path)]
 """A path, absolute: a relative one is seen from the file, or the place, it is written in."""

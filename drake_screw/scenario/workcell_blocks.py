@@ -13,6 +13,7 @@ from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.scenario.values import (
     METRES,
     RADIANS,
+    Address,
     Angles,
     Interval,
     ModelName,
@@ -45,6 +46,9 @@ class RobotBlock(Block):
     by themselves"""
     xacro: Options = Field(default={})
     """arguments of a model that is written in xacro"""
+    srdf: Address | None = None
+    """path of the SRDF file that says which links may touch one another, relative to the scenario
+    file, or its address in a package"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")

@@ -253,9 +253,10 @@ def open_study(path: PathLike) -> Study:
     study = Study(path, load_stored_scenario(path / SCENARIO), record)
     setup = study.experiment.setup
     now = _hashes(setup)
-    for name, used in ({"model": setup.workcell.model_file} | setup.meshes).items():
+    for name, used in _files(setup).items():
         if now[name] != hashes.get(name):
             what = "mesh" if name in setup.meshes else "robot model"
+            what = "SRDF" if name in setup.srdf else what
             raise RunDirectoryError(
                 f"the {what} {used} has changed since this study began",
                 remedy="Put the file back as it was, or begin the study again.",
@@ -264,10 +265,14 @@ def open_study(path: PathLike) -> Study:
     return study
 
 
+def _files(setup: PlanningSetup) -> dict[str, Path]:
+    return {"model": setup.workcell.model_file} | setup.srdf | setup.meshes
+
+
 def _hashes(setup: PlanningSetup) -> dict[str, str]:
     """Of what was read of the robot's model, and of the meshes around it."""
-    meshes = {name: file_hash(file) for name, file in setup.meshes.items()}
-    return {"model": setup.workcell.model.hash} | meshes
+    others = {name: file_hash(file) for name, file in (setup.srdf | setup.meshes).items()}
+    return {"model": setup.workcell.model.hash} | others
 
 
 def numbers_of_regions(text: str) -> tuple[int, ...]:

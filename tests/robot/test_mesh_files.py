@@ -226,3 +226,27 @@ def test_materials_of_one_name_are_told_apart(tmp_path: Path) -> None:
     cell = build_workcell(RobotConfig(str(file), ("j",), "hand", (0.0,)))
     assert cell.model.read != file
     assert cell.model.read.read_text().count('name="grey"') == 2
+
+
+def test_oddities_of_published_models_are_no_matter(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """No name, fixed joints that follow others, joints that follow fixed ones, no package."""
+    limits = "<axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='1'/>"
+    joints = "".join(
+        f"<link name='{name}'/><joint name='{name}_joint' type='{kind}'><parent link='base'/>"
+        f"<child link='{name}'/>{limits}{mimic}</joint>"
+        for name, kind, mimic in (
+            ("hand", "revolute", ""),
+            ("fixed", "fixed", "<mimic joint='hand_joint'/>"),
+            ("left", "revolute", "<mimic joint='fixed_joint'/>"),
+            ("right", "revolute", "<mimic joint='hand_joint'/>"),
+        )
+    )
+    look = "<visual><geometry><mesh filename='package:///a.obj'/></geometry></visual>"
+    file = tmp_path / "arm.urdf"
+    file.write_text(f"<robot><link name='base'>{look}</link>{joints}</robot>")
+    cell = build_workcell(RobotConfig(str(file), ("hand_joint",), "hand", (0.0,)))
+    assert [s.reason for s in cell.model.left_out] == ["is at an address that leads nowhere"]
+    assert cell.model.read.read_text().count("<mimic") == 1
+    assert "'left_joint' is to follow 'fixed_joint', which does not move" in caplog.text
