@@ -30,6 +30,9 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         block.base,
         block.parked,
         tool_config(scenario),
+        packages=block.packages,
+        xacro=block.xacro,
+        srdf=block.srdf,
     )
 
 
