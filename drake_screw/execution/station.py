@@ -22,13 +22,7 @@ from pydrake.multibody.plant import (
     MultibodyPlant,
     MultibodyPlantConfig,
 )
-from pydrake.multibody.tree import (
-    JointActuator,
-    JointIndex,
-    ModelInstanceIndex,
-    PdControllerGains,
-    RigidBody,
-)
+from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 from pydrake.systems.primitives import (
     Adder,
@@ -40,18 +34,15 @@ from pydrake.systems.primitives import (
 
 from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
+from drake_screw.execution.motors import motorise
 from drake_screw.execution.wiring import desired_state, joint_places, measured_state
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.robot.ignored import ignore_collisions
 from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.robot.tool import let_touch
 from drake_screw.typing import Array
 
 Follower = ScrewPlanExecutor | JointPathSource
-
-STIFFNESS = 80.0  # 1/rad: position gains as multiples of a joint's greatest effort
-DAMPING = 0.05  # s: velocity gains as multiples of position gains
-UNRATED = 100.0  # N m, greatest effort assumed for gains where the model states none that is true
-MOST_EFFORT = 1e4  # N m; more than this is no statement
 
 
 @dataclass(frozen=True)
@@ -137,12 +128,13 @@ def build_station(
     parser = Parser(plant)
     _, instance, tool = add_robot(parser, robot)
     _, bodies = add_surroundings(plant, table, objects, obstacles)
-    _motorise(plant, instance)
+    motorise(plant, instance)
     plant.set_gravity_enabled(instance, False)
     plant.Finalize()
     _ignore_contacts_of_objects(plant, scene_graph, instance)
     if robot.tool is not None and tool is not None:
         let_touch(plant, scene_graph, tool, robot.tool.touches)
+    ignore_collisions(plant, scene_graph, instance, robot.ignore_collisions)
     arm = _kinematics(robot)
     follower = builder.AddNamedSystem(
         "executor", ScrewPlanExecutor(arm) if follow_screws else JointPathSource(arm)
@@ -179,22 +171,6 @@ def build_station(
     )  # fmt: skip
 
 
-def _motorise(plant: MultibodyPlant, robot: ModelInstanceIndex) -> None:
-    """Position control of every joint with one degree of freedom, within the model's efforts."""
-    driven: dict[JointIndex, JointActuator] = {}
-    for index in plant.GetJointActuatorIndices():
-        actuator = plant.get_joint_actuator(index)
-        driven.setdefault(actuator.joint().index(), actuator)
-    for index in plant.GetJointIndices(robot):
-        joint = plant.get_joint(index)
-        if joint.num_velocities() != 1:
-            continue
-        actuator = driven.get(index) or plant.AddJointActuator(joint.name(), joint)
-        effort = actuator.effort_limit()
-        p = STIFFNESS * (effort if effort < MOST_EFFORT else UNRATED)
-        actuator.set_controller_gains(PdControllerGains(p=p, d=DAMPING * p))
-
-
 def _ignore_contacts_of_objects(
     plant: MultibodyPlant, scene_graph: SceneGraph, robot: ModelInstanceIndex
 ) -> None:
@@ -215,4 +191,10 @@ def _kinematics(robot: RobotConfig) -> Arm:
     plant = MultibodyPlant(0.0)
     add_robot(Parser(plant), robot)
     plant.Finalize()
-    return Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
+    return Arm(
+        plant,
+        robot.joints,
+        robot.end_effector,
+        parked=robot.parked,
+        velocity_limits=robot.velocity_limits,
+    )

@@ -11,6 +11,8 @@ from pydrake.multibody.tree import Frame, FrameIndex, JacobianWrtVariable, Joint
 
 from drake_screw.errors import ModelError, unknown
 from drake_screw.robot.screw_chain import ScrewChain
+from drake_screw.robot.velocities import assumed_in_words
+from drake_screw.robot.velocities import velocity_limits as resolved
 from drake_screw.screws import shift
 from drake_screw.typing import Array
 
@@ -25,6 +27,12 @@ class Arm:
         joint_names: the arm's n joints, base to end effector.
         end_effector: name of the frame E that follows the screws.
         parked: positions of other joints (rad, m) by name; the rest keep the plant's defaults.
+        velocity_limits: rad/s (m/s) of the arm's joints by name, in place of the plant's.
+
+    Attributes:
+        lower, upper: (n,) rad or m, position limits.
+        velocity_limits: (n,) rad/s or m/s, finite and above 0.
+        assumed_velocities: names of the joints whose velocity limit is a default, for want of one.
 
     Raises:
         ModelError: a name the plant does not have (the message lists those it has), a joint that
@@ -39,6 +47,7 @@ class Arm:
         end_effector: str,
         *,
         parked: Mapping[str, float] | None = None,
+        velocity_limits: Mapping[str, float] | None = None,
     ) -> None:
         self.plant = plant
         self.owner: object = None
@@ -72,7 +81,7 @@ class Arm:
         self._columns = np.array([joint.position_start() for joint in joints])
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
-        self.velocity_limits = np.array([joint.velocity_upper_limits()[0] for joint in joints])
+        self.velocity_limits, self.assumed_velocities = resolved(joints, velocity_limits or {})
         endless = ~(np.isfinite(self.lower) & np.isfinite(self.upper))
         if endless.any():
             raise ModelError(
@@ -96,6 +105,12 @@ class Arm:
         """The unit of each joint's position, "rad" or "m"."""
         kinds = (self.plant.GetJointByName(name).type_name() for name in self.joint_names)
         return tuple("rad" if kind == "revolute" else "m" for kind in kinds)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What is taken for what the model does not state, a line each; none if it states all."""
+        units = dict(zip(self.joint_names, self.units, strict=True))
+        return assumed_in_words(self.assumed_velocities, units)
 
     def full_positions(self, q: ArrayLike) -> Array:
         """Positions of the whole plant; q (..., n) rad or m to (..., plant.num_positions())."""

@@ -37,6 +37,8 @@ class RobotConfig:
     base: str = "base"
     parked: Mapping[str, float] = field(default_factory=dict)
     tool: ToolConfig | None = None
+    velocity_limits: Mapping[str, float] = field(default_factory=dict)
+    ignore_collisions: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)

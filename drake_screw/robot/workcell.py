@@ -22,6 +22,7 @@ from pydrake.planning import (
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.arm import Arm
+from drake_screw.robot.ignored import ignore_collisions
 from drake_screw.robot.obstacles import ObstacleConfig
 from drake_screw.robot.parts import (
     ObjectConfig,
@@ -36,6 +37,10 @@ from drake_screw.typing import Array
 
 MANY = 100
 """Configurations from which on sharing them out among threads takes less time than it saves."""
+
+
+GRAZE = 1e-9
+"""m, between bodies that touch: rounding, since to be at a distance of 0 is to collide."""
 
 
 @dataclass(frozen=True)
@@ -144,17 +149,18 @@ class Workcell:
     def colliding_bodies(
         self, q: ArrayLike, X_WO: ArrayLike, clearance: float = 0.0
     ) -> tuple[tuple[str, str], ...]:
-        """Names of bodies that touch at q (n,), or are nearer than a clearance in m.
+        """Names of bodies that touch at q (n,), or are no farther apart than a clearance in m.
 
         In pairs, the robot's first; those that are nearest, or deepest in one another, come first.
         """
-        found = self.checker.CalcRobotClearance(self.positions(q, X_WO), clearance)
+        reach = clearance + GRAZE
+        found = self.checker.CalcRobotClearance(self.positions(q, X_WO), reach)
         distances = np.asarray(found.distances())
         robot, other = found.robot_indices(), found.other_indices()
         names = [
             (self.plant.get_body(robot[i]).name(), self.plant.get_body(other[i]).name())
             for i in np.argsort(distances, kind="stable").tolist()
-            if distances[i] < clearance
+            if distances[i] <= reach
         ]
         return tuple(dict.fromkeys(names))
 
@@ -177,7 +183,13 @@ def build_workcell(
     model_file, instance, tool = add_robot(builder.parser(), robot)
     fixed, bodies = add_surroundings(plant, table, objects, obstacles)
     plant.Finalize()
-    arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
+    arm = Arm(
+        plant,
+        robot.joints,
+        robot.end_effector,
+        parked=robot.parked,
+        velocity_limits=robot.velocity_limits,
+    )
     if len(robot.start) != arm.n:
         raise ModelError(
             f"the start configuration has {len(robot.start)} angles for {arm.n} joints"
@@ -186,6 +198,7 @@ def build_workcell(
     if robot.tool is not None and tool is not None:
         arm.held(robot.tool.frame)
         let_touch(plant, scene_graph, tool, robot.tool.touches)
+    ignore_collisions(plant, scene_graph, instance, robot.ignore_collisions)
     diagram = builder.Build()
     arm.owner = diagram
     checker = SceneGraphCollisionChecker(
