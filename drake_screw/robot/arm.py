@@ -10,6 +10,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import Frame, FrameIndex, JacobianWrtVariable, Joint
 
 from drake_screw.errors import ModelError, unknown
+from drake_screw.robot.names import given_frames
 from drake_screw.robot.screw_chain import ScrewChain
 from drake_screw.robot.velocities import assumed_in_words
 from drake_screw.robot.velocities import velocity_limits as resolved
@@ -228,17 +229,7 @@ def find_frame(plant: MultibodyPlant, name: str) -> Frame:
     matches = [frame for frame in frames if frame.name() == name]
     if len(matches) == 1:
         return matches[0]
-    message, remedy = unknown("frame", name, "the robot model", _public(frames))
+    message, remedy = unknown("frame", name, "the robot model", given_frames(plant))
     if matches:
         message = f"{len(matches)} frames are called '{name}'"
     raise ModelError(message, remedy=remedy)
-
-
-def _public(frames: Sequence[Frame]) -> list[str]:
-    """Names people gave: not the world, nor the frames Drake makes at each end of a joint."""
-    names = [frame.name() for frame in frames]
-    return [
-        n
-        for n in names
-        if n != "world" and not n.startswith("_") and not n.endswith(("_parent", "_child"))
-    ]

@@ -21,6 +21,32 @@ def taken_names(plant: MultibodyPlant) -> set[str]:
     }
 
 
+def given_frames(plant: MultibodyPlant) -> list[str]:
+    """Names that people gave to frames of a robot's model, those of its links among them.
+
+    Not the world, what stands around, or the frames that Drake makes for joints and welds.
+    """
+    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
+    moving = [joint for joint in joints if joint.num_positions() == 1]
+    robots = {joint.model_instance() for joint in moving}
+    if plant.is_finalized():
+        carried = plant.GetBodiesKinematicallyAffectedBy([joint.index() for joint in moving])
+        robots |= {plant.get_body(index).model_instance() for index in carried}
+    frames = [plant.get_frame(FrameIndex(i)) for i in range(plant.num_frames())]
+    names = {frame.name() for frame in frames}
+    made = {f"{joint.name()}_{end}" for joint in joints for end in ("parent", "child")}
+    made |= {
+        f"{joint.name()}_{name}_{end}" for joint in joints for name in names for end in ("F", "M")
+    }
+    return [
+        frame.name()
+        for frame in frames
+        if frame.model_instance() in robots
+        and frame.name() not in made
+        and not frame.name().startswith("_")
+    ]
+
+
 def check_apart(plant: MultibodyPlant, kind: str, names: Iterable[str]) -> None:
     """Check that things to be added to a plant are named unlike one another and all there is.
 
