@@ -79,7 +79,8 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
 _MEASURES: dict[str, Callable[[ExecutionReport], str]] = {
     "planned_s": lambda r: f"{r.planned:.3f}",
     "time_s": lambda r: f"{r.time:.3f}",
-    "worst_margin_rad": lambda r: f"{r.worst_margin:.5f}",
+    "worst_margin_rad": lambda r: f"{r.worst_margin:.5f}" if r.worst_unit == "rad" else "",
+    "worst_margin_m": lambda r: f"{r.worst_margin:.5f}" if r.worst_unit == "m" else "",
     "worst_joint": lambda r: r.worst_joint,
     "outside_limits": lambda r: ";".join(r.outside),
     "velocity_over_limit": lambda r: f"{r.velocity:.4f}",
@@ -113,13 +114,16 @@ class Measures:
     """The worst of some executions.
 
     Attributes:
-        joint_margin: rad, the least; negative outside the limits.
+        joint_margin: the least, in `unit`; negative outside the limits.
+        joint, unit: which joint had it, and "rad" or "m".
         velocity: greatest joint velocity, over its limit.
         tracking, screws, final: greatest of each kind, see `ExecutionReport`.
         time: s, least, greatest and mean.
     """
 
     joint_margin: float
+    joint: str
+    unit: str
     velocity: float
     tracking: Deviation
     screws: Deviation
@@ -135,6 +139,7 @@ class TrialSummary:
         instances: how many there were to execute.
         executed: how many have a plan, which was simulated.
         done: how many of those ended as planned.
+        flawless: how many of those besides kept all limits and touched nothing.
         outside_limits, over_velocity, with_contact: how many had such a flaw.
         worst: of all that were executed; None if none was.
         without_plan: why there is none.
@@ -144,6 +149,7 @@ class TrialSummary:
     instances: int
     executed: int
     done: int
+    flawless: int
     outside_limits: int
     over_velocity: int
     with_contact: int
@@ -161,14 +167,17 @@ class TrialSummary:
                 f"outside joint limits       {self.outside_limits}",
                 f"over a velocity limit      {self.over_velocity}",
                 f"with contact               {self.with_contact}",
-                f"least joint margin         {self.worst.joint_margin:.4f} rad",
+                f"least joint margin         {self.worst.joint_margin:.4f} {self.worst.unit}",
                 f"greatest joint velocity    {self.worst.velocity:.0%} of its limit",
                 f"tracking error (set point) {_at_most(self.worst.tracking)}",
                 f"path error (screw)         {_at_most(self.worst.screws)}",
                 f"error at the last pose     {_at_most(self.worst.final)}",
                 f"time                       {least:.1f} to {most:.1f}, mean {mean:.1f} s",
             ]
-        return "\n".join([*lines, *(f"  {remark}" for remark in self.flawed)])
+        lines += [f"  {remark}" for remark in self.flawed]
+        if not self.flawless:
+            lines.append("nothing was executed as planned")
+        return "\n".join(lines)
 
 
 def summarize(trials: Sequence[Trial]) -> TrialSummary:
@@ -186,6 +195,7 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
         instances=len(trials),
         executed=len(reports),
         done=sum(report.status.phase is Phase.DONE for report in reports),
+        flawless=sum(report.flawless for report in reports),
         outside_limits=sum(bool(report.outside) for report in reports),
         over_velocity=sum(report.velocity > 1.0 for report in reports),
         with_contact=sum(bool(report.contacts) for report in reports),
@@ -207,8 +217,11 @@ def _flaws(report: ExecutionReport) -> str:
 
 def _measures(reports: Sequence[ExecutionReport]) -> Measures:
     times = [report.time for report in reports]
+    tightest = min(reports, key=lambda report: report.worst_compared)
     return Measures(
-        joint_margin=min(report.worst_margin for report in reports),
+        joint_margin=tightest.worst_margin,
+        joint=tightest.worst_joint,
+        unit=tightest.worst_unit,
         velocity=max(report.velocity for report in reports),
         tracking=_greatest([report.tracking for report in reports]),
         screws=_greatest([screw for report in reports for screw in report.screws]),

@@ -12,6 +12,8 @@ from pydrake.multibody.tree import JacobianWrtVariable
 from drake_screw.errors import ModelError
 from drake_screw.robot.names import Instances, find_frame, find_joint
 from drake_screw.robot.screw_chain import ScrewChain
+from drake_screw.robot.velocities import assumed_in_words
+from drake_screw.robot.velocities import velocity_limits as resolved
 from drake_screw.screws import shift
 from drake_screw.screws.endless import is_endless, middles
 from drake_screw.typing import Array
@@ -31,6 +33,12 @@ class Arm:
         parked: positions of other joints (rad, m) by name; the rest keep the plant's defaults.
         robot: the models that names are looked up in; all of the plant's if None. A name that
             several of them have is given with its model's, as "left::hand".
+        velocity_limits: rad/s (m/s) of the arm's joints by name, in place of the plant's.
+
+    Attributes:
+        lower, upper: (n,) rad or m, position limits; infinite where a joint has none.
+        velocity_limits: (n,) rad/s or m/s, finite and above 0.
+        assumed_velocities: names of the joints whose velocity limit is a default, for want of one.
 
     Raises:
         ModelError: a name the plant does not have (the message lists those it has), a joint that
@@ -46,6 +54,7 @@ class Arm:
         *,
         parked: Mapping[str, float] | None = None,
         robot: Instances | None = None,
+        velocity_limits: Mapping[str, float] | None = None,
     ) -> None:
         self.plant = plant
         self.owner: object = None
@@ -81,7 +90,9 @@ class Arm:
         self._columns = np.array([joint.position_start() for joint in joints])
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
-        self.velocity_limits = np.array([joint.velocity_upper_limits()[0] for joint in joints])
+        self.velocity_limits, self.assumed_velocities = resolved(
+            joints, self.joint_names, velocity_limits or {}
+        )
         self.endless = is_endless(self.lower, self.upper) & (np.array(self.units) == "rad")
         limited = np.isfinite(self.lower) & np.isfinite(self.upper)
         if not (limited | self.endless).all():
@@ -112,6 +123,12 @@ class Arm:
     def units(self) -> tuple[str, ...]:
         """The unit of each joint's position, "rad" or "m"."""
         return tuple("rad" if joint.type_name() == "revolute" else "m" for joint in self.joints)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What is taken for what the model does not state, a line each; none if it states all."""
+        units = dict(zip(self.joint_names, self.units, strict=True))
+        return assumed_in_words(self.assumed_velocities, units)
 
     def full_positions(self, q: ArrayLike) -> Array:
         """Positions of the whole plant; q (..., n) rad or m to (..., plant.num_positions())."""
@@ -162,6 +179,19 @@ class Arm:
         q = np.asarray(q, dtype=float)
         return np.minimum(q - self.lower, self.upper - q)
 
+    @property
+    def slides(self) -> Array:
+        """(n,) whether each joint is prismatic."""
+        return np.array([unit == "m" for unit in self.units])
+
+    def tightest(self, q: ArrayLike) -> int:
+        """The joint that comes nearest to a limit at any of the configurations (..., n).
+
+        Prismatic joints compare by the part of their range, which counts as half a turn.
+        """
+        least = self.margin(q).reshape(-1, self.n).min(axis=0)
+        return int(np.argmin(comparable(least, self.upper - self.lower, self.slides)))
+
     def screw_chain(self) -> ScrewChain:
         """The arm as a product of exponentials, read off the plant at q = 0."""
         X_WE, J_WE = self.pose_and_jacobian(np.zeros(self.n))
@@ -180,6 +210,18 @@ class Arm:
             self._context, JacobianWrtVariable.kQDot, self._E, np.zeros(3), self._W, self._W
         )
         return J[:, self._columns]
+
+
+def comparable(margin: Array, extent: Array, slides: Array) -> Array:
+    """Distances from limits (..., n) in rad, for comparing: of slides, in parts of their range.
+
+    Args:
+        margin: rad, or m of slides.
+        extent: (n,) of the joints' ranges, which may be infinite.
+        slides: (n,) which joints are prismatic; their whole range counts as half a turn.
+    """
+    weight = np.where(slides & np.isfinite(extent), np.pi / extent, 1.0)
+    return np.asarray(margin * weight)
 
 
 def _with(q: Array, index: int, value: float) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from pydrake.multibody.plant import MultibodyPlant
@@ -103,9 +103,13 @@ def _the_one(
 
 
 def _named_by_people(frame: Frame) -> bool:
-    """Whether it is not the world, nor a frame that Drake makes at each end of a joint."""
+    """Whether it is not the world, nor a frame that Drake makes at each end of a joint or weld."""
     name = frame.name()
-    return not (name == "world" or name.startswith("_") or name.endswith(("_parent", "_child")))
+    if name == "world" or name.startswith("_") or name.endswith(("_parent", "_child")):
+        return False
+    plant = frame.GetParentPlant()
+    joints = [plant.get_joint(i).name() for i in plant.GetJointIndices()]
+    return not (name.endswith(("_F", "_M")) and any(name.startswith(f"{j}_") for j in joints))
 
 
 def check_apart(plant: MultibodyPlant, kind: str, names: Iterable[str]) -> None:

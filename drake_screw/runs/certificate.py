@@ -28,7 +28,8 @@ class Certificate:
         beta, epsilon, delta: what was to be certified, see `drake_screw.bandits.Goal`.
         collisions_checked: whether touching something counts as failing.
         clearance: m, that the robot keeps from all else and itself, where that is checked.
-        joint_margin: rad (or m), that joints keep from their limits.
+        joint_margin: rad, that revolute joints keep from their limits.
+        slide_margin: m, that prismatic ones keep.
         incomplete_shapes: links of the robot that lack collision shapes of its model; what touches
             there is not seen.
         strategy: name of the bandit.
@@ -42,6 +43,7 @@ class Certificate:
         delta_spent_over_attempts: whether the rounds share delta.
         attempt: number of the last round's attempt to certify, from 1.
         delta_of_attempt: its share of delta.
+        ignored_collisions: pairs of links that may touch.
         freedoms: symmetries that were taken for granted.
         approach: how the arm comes to the first guiding pose: "screw", or "free" for any joint
             motion.
@@ -73,6 +75,8 @@ class Certificate:
     delta_of_attempt: float | None = None
     clearance: float = 0.0
     joint_margin: float = 0.0
+    slide_margin: float = 0.0
+    ignored_collisions: tuple[tuple[str, str], ...] = ()
     incomplete_shapes: tuple[str, ...] = ()
     freedoms: tuple[Freedom, ...] = ()
     approach: Literal["screw", "free"] = "screw"
@@ -109,7 +113,8 @@ class Certificate:
                 f"Of the weakest region: {self.claim}.",
             ]
         freedoms = map(str, self.freedoms)
-        return (*shown, self._scope(), *freedoms, *self._fidelity(), self._evidence())
+        scope = self._scope(), *self._ignored()
+        return (*shown, *scope, *freedoms, *self._fidelity(), self._evidence())
 
     def _scope(self) -> str:
         if not self.collisions_checked:
@@ -121,8 +126,10 @@ class Certificate:
         else:
             collisions = " that touches nothing"
         within = "within"
-        if self.joint_margin > 0.0:
-            within = f"at least {self.joint_margin:g} rad (m, where they slide) within"
+        if self.joint_margin > 0.0 or self.slide_margin > 0.0:
+            kept = [f"{self.joint_margin:g} rad"] if self.joint_margin > 0.0 else []
+            kept += [f"{self.slide_margin:g} m, where joints slide,"] * (self.slide_margin > 0.0)
+            within = f"at least {' and '.join(kept)} within"
         return (
             f"This is of {self.regions} regions, with {self.demonstrations} "
             f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
@@ -138,6 +145,12 @@ class Certificate:
             " What these links touch was seen in part or not at all, as collision shapes of theirs "
             f"could not be had: {links}."
         )
+
+    def _ignored(self) -> tuple[str, ...]:
+        if not (self.collisions_checked and self.ignored_collisions):
+            return ()
+        pairs = ", ".join(f"{a} and {b}" for a, b in self.ignored_collisions)
+        return (f"Whether these touch is not looked at: {pairs}.",)
 
     def _way_there(self) -> str:
         if self.approach != "free":
@@ -221,6 +234,8 @@ def certificate(
         collisions_checked=setup.scenario.planner.collision,
         clearance=setup.scenario.planner.clearance,
         joint_margin=setup.scenario.planner.joint_margin,
+        slide_margin=setup.scenario.planner.slide_margin,
+        ignored_collisions=setup.scenario.robot.ignore_collisions,
         incomplete_shapes=setup.workcell.model.incomplete,
         strategy=bandit.name,
         guarantee=bandit.guarantee,

@@ -163,4 +163,15 @@ Option = bool | int | float | str
 Options = Annotated[dict[str, Option], BeforeValidator(_nothing_is_empty)]
 Packages = Annotated[dict[str, Folder], BeforeValidator(_nothing_is_empty)]
 """Folders by the names of packages."""
+Pairs = Annotated[
+    tuple[tuple[str, str], ...],
+    WithJsonSchema(
+        {
+            "type": "array",
+            "title": "a list of pairs of names",
+            "items": {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2},
+        }
+    ),
+]
+Limits = Annotated[dict[str, Positive], BeforeValidator(_nothing_is_empty)]
 Angles = Annotated[dict[str, float], BeforeValidator(_nothing_is_empty)]

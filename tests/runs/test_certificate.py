@@ -19,17 +19,17 @@ EARLIER = SimpleNamespace(samples=48, attempted=False)
 ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 
 
-def scenario_of(collision=False, objects=(), tool=None, approach="screw", **kept):
+def scenario_of(collision=False, objects=(), tool=None, approach="screw", ignored=(), **kept):
     return SimpleNamespace(
         coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
         planner=SimpleNamespace(
-            **{"clearance": 0.0, "joint_margin": 0.0} | kept,
+            **{"clearance": 0.0, "joint_margin": 0.0, "slide_margin": 0.0} | kept,
             collision=collision,
             approach=approach,
             turns=24,
         ),
         objects=objects,
-        robot=SimpleNamespace(tool=tool),
+        robot=SimpleNamespace(tool=tool, ignore_collisions=ignored),
     )
 
 
@@ -91,10 +91,24 @@ def test_what_is_kept_is_said() -> None:
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
     assert (stated.clearance, stated.joint_margin) == (0.02, 0.1)
     assert (
-        "a plan at least 0.1 rad (m, where they slide) within the joint limits of the robot's "
-        "model along which the robot keeps 0.02 m from all else and itself." in text
+        "a plan at least 0.1 rad within the joint limits of the robot's model along which the "
+        "robot keeps 0.02 m from all else and itself." in text in text
     )
     assert "touches nothing" not in text
+    sliding = scenario_of(joint_margin=0.1, slide_margin=0.01)
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=sliding)
+    assert stated.slide_margin == 0.01
+    assert "at least 0.1 rad and 0.01 m, where joints slide, within the joint limits" in text
+
+
+def test_what_may_touch_is_said() -> None:
+    pairs = (("left_finger", "right_finger"), ("base", "table"))
+    for collision in (True, False):
+        scenario = scenario_of(collision=collision, ignored=pairs)
+        stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
+        assert stated.ignored_collisions == pairs
+        said = "Whether these touch is not looked at: left_finger and right_finger, base and table."
+        assert (said in text) is collision
 
 
 def test_it_says_what_was_taken_for_granted() -> None:

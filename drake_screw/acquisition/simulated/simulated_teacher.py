@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +20,7 @@ from drake_screw.acquisition.simulated.motions import (
     tool_lengths,
     usual_azimuth,
 )
+from drake_screw.acquisition.simulated.stops import COMFORTABLE, MARGIN, ROUNDING, Stops
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.recording import checked
@@ -30,9 +32,6 @@ from drake_screw.typing import Array
 CANDIDATES = 64  # ways thought of at a time
 ATTEMPTS = 3
 COLLISION_STRIDE = 6  # one in so many points of a path is checked before it is performed
-MARGIN = 0.15  # rad, what people mean to keep from the joints' stops
-MARGIN_TOLERANCE = 0.05  # rad, by which they miss it
-COMFORTABLE_MARGIN = 0.6  # rad, beyond which more distance from the stops is no easier
 AZIMUTH_WEIGHT = 0.4  # rad of margin that people give up rather than come from a radian aside
 TRAVEL_WEIGHT = 0.03  # rad of margin that people give up to save a radian of joint motion
 
@@ -77,6 +76,7 @@ class SimulatedTeacher:
         self.motion = motion if isinstance(motion, str) else getattr(motion, "__name__", "motion")
         self._motion = MOTIONS[motion] if isinstance(motion, str) else motion
         self._chain = workcell.arm.screw_chain()
+        self._stops = Stops.of(workcell.arm, workcell.start)
 
     def demonstrate(
         self,
@@ -92,23 +92,22 @@ class SimulatedTeacher:
         """
         X_WO = self.area.X_WO(suggestion.x_y_yaw)
         x, y = suggestion.x_y_yaw[0, :2]
-        unreached = limited = collided = 0
+        unreached = limited = 0
+        touched: Counter[tuple[str, str]] = Counter()
         for attempt in range(ATTEMPTS):
             rehearsal = self._rehearse(X_WO, rng, stretched=attempt > 0)
             unreached += int(np.count_nonzero(~rehearsal.paths.arrived))
             limited += int(np.count_nonzero(rehearsal.paths.arrived & ~rehearsal.within))
             possible = np.flatnonzero(np.isfinite(rehearsal.comfort))
             for choice in possible[np.argsort(-rehearsal.comfort[possible])]:
-                if self.workcell.collides(
-                    rehearsal.paths.q[choice, ::COLLISION_STRIDE], X_WO
-                ).any():
-                    collided += 1
+                if hit := self._touching(rehearsal.paths.q[choice, ::COLLISION_STRIDE], X_WO):
+                    touched[hit] += 1
                     continue
                 q = self._perform(rehearsal, int(choice), rng)
-                if (self.workcell.arm.margin(q) < MARGIN - MARGIN_TOLERANCE).any():
+                if not self._stops.kept(q):
                     limited += 1
-                elif self.workcell.collides(q, X_WO).any():
-                    collided += 1
+                elif hit := self._touching(q, X_WO):
+                    touched[hit] += 1
                 else:
                     remark = f"simulated {self.motion} at x={x:.2f}, y={y:.2f}"
                     return Lesson(self._recording(q, X_WO, number), remark)
@@ -116,20 +115,28 @@ class SimulatedTeacher:
             None,
             f"no feasible demonstration at x={x:.2f}, y={y:.2f}: of {ATTEMPTS * CANDIDATES} ways "
             f"of {self.motion}, {unreached} are out of reach, {limited} meet a joint limit and "
-            f"{collided} collide",
+            f"{touched.total()} collide{_most_often(touched)}",
         )
+
+    def _touching(self, q: Array, X_WO: Array) -> tuple[str, str] | None:
+        """Which bodies touch first along q (m, n); None if none do."""
+        collides = self.workcell.collides(q, X_WO)
+        if not collides.any():
+            return None
+        pairs = self.workcell.colliding_bodies(q[int(np.argmax(collides))], X_WO)
+        return pairs[0] if pairs else ("the robot", "something")
 
     def _rehearse(self, X_WO: Array, rng: np.random.Generator, *, stretched: bool) -> _Rehearsal:
         rest, p_WO = self._chain.pose(self.workcell.start), X_WO[0, :3, 3]
         keys = self._motion(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
         aside = azimuth_deviations(rng, CANDIDATES)
         X_WK = hand_poses(keys, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
-        paths = follow_key_poses(self._chain, self.workcell.start, X_WK)
-        margin = self.workcell.arm.margin(paths.q).min(axis=(1, 2))
-        within = margin >= MARGIN
+        paths = follow_key_poses(self._chain, self.workcell.start, X_WK, self._stops.ends)
+        margin = self._stops.margin(paths.q).min(axis=1)
+        within = margin >= MARGIN - ROUNDING
         travel = np.linalg.norm(np.diff(paths.q, axis=1), axis=-1).sum(axis=1)
         comfort = (
-            np.minimum(margin, COMFORTABLE_MARGIN)
+            np.minimum(margin, COMFORTABLE)
             - keys.held
             - AZIMUTH_WEIGHT * aside**2
             - TRAVEL_WEIGHT * travel
@@ -159,4 +166,11 @@ class SimulatedTeacher:
             X_WO,
             task_objects=(self.area.objects[0].name,) if len(self.area.objects) > 1 else (),
         )
-        return replace(checked(recording, arm.lower, arm.upper), notes=())
+        return replace(checked(recording, arm.lower, arm.upper, units=arm.units), notes=())
+
+
+def _most_often(touched: Counter[tuple[str, str]]) -> str:
+    if not touched:
+        return ""
+    ((robot, other), count), *_ = touched.most_common(1)
+    return f" ({robot} with {other} in {count} of them)"
