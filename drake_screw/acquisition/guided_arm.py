@@ -42,8 +42,7 @@ class GuidedArm:
         self.q = np.array(q, dtype=float)
         self.period = period
         self.stuck = False
-        limits = np.where(np.isfinite(arm.velocity_limits), arm.velocity_limits, 2.0)
-        self._speed = speed = limits * SPEED_FRACTION
+        self._speed = speed = arm.velocity_limits * SPEED_FRACTION
         parameters = DifferentialInverseKinematicsParameters(arm.n, arm.n)
         parameters.set_time_step(period)
         lower = np.minimum(arm.lower + LIMIT_MARGIN, self.q)

@@ -20,7 +20,7 @@ from drake_screw.assembly.preview_parts import (
     PreviewedTool,
     PreviewedTree,
 )
-from drake_screw.assembly.sanity import Covered, covered_by_obstacles
+from drake_screw.assembly.sanity import Covered, covered_by_obstacles, touching_at_start
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import CertifyOrSplit
 from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
@@ -60,11 +60,16 @@ class Preview:
         first: where the first one is, "random" or "middle"; None where it is not asked for so.
         budget: most demonstrations in total.
         farthest_corner: m, of the work area from the shoulder.
+        assumed: what is taken for what the robot's model does not state, a line each.
         lacks_ompl: whether approaches fail that OMPL, which is not installed, would lead around
             what they touch.
         samples: instances of a round.
         plans_per_second: here, measured with one demonstration; None if there is none to begin
             with.
+        no_demonstration: why the teacher has none at a place drawn at random; None if it has.
+        ignored_collisions: pairs of links that may touch.
+        touching_at_start: pairs of bodies that touch where every plan starts; only where planning
+            does not look at that.
     """
 
     scenario: str
@@ -93,9 +98,13 @@ class Preview:
     first: str | None
     budget: int
     farthest_corner: float
+    assumed: tuple[str, ...]
     lacks_ompl: bool
     samples: PreviewedSamples
     plans_per_second: float | None
+    no_demonstration: str | None
+    ignored_collisions: tuple[tuple[str, str], ...]
+    touching_at_start: tuple[tuple[str, str], ...]
 
     def __str__(self) -> str:
         return "\n".join(f"{name:<10} {text}" for name, text in self._lines())
@@ -108,6 +117,9 @@ class Preview:
         yield from (("object", str(item)) for item in self.objects)
         yield from (("", f"  {freedom}") for freedom in self.freedoms)
         yield from (("obstacle", str(item)) for item in self.obstacles)
+        if self.ignored_collisions:
+            pairs = ", ".join(f"{a} and {b}" for a, b in self.ignored_collisions)
+            yield "may touch", pairs
         if self.approach == "free":
             yield "approach", "free: any joint motion to the first guiding pose"
         yield "regions", f"K = {self.regions}" if self.adaptive is None else str(self.adaptive)
@@ -136,11 +148,20 @@ class Preview:
                 "shoulder; only an object held long reaches there",
             )
         yield from (("note", str(item)) for item in self.covered)
+        if self.touching_at_start:
+            both = " and ".join(f"'{a}' touches '{b}'" for a, b in self.touching_at_start)
+            yield (
+                "note",
+                f"{both} at the start; collisions are left out here, but execute and export look "
+                "at them, and will find no plan",
+            )
+        yield from (("note", line) for line in self.assumed)
         if self.lacks_ompl:
             yield "note", connection.ABSENT
         rate = self.plans_per_second
         if rate is None:
-            yield "time", "unknown without a first demonstration"
+            why = f": {self.no_demonstration}" if self.no_demonstration else ""
+            yield "time", f"unknown without a first demonstration{why}"
             return
         yield "samples", str(self.samples)
         if self.samples.fixed and self.samples.round is not None:
@@ -164,6 +185,7 @@ def preview(scenario: Scenario) -> Preview:
     arm, goal, tree, block = setup.workcell.arm, setup.goal, setup.tree, scenario.teacher
     asking, recordings = scenario.demonstrations, teacher_recordings(setup)
     chain, recorder = arm.screw_chain(), setup.recorder
+    rate, no_demonstration = _plans_per_second(setup)
     other = None
     if recorder.model_file is not None:
         reach = recorder.arm.screw_chain().reach
@@ -201,9 +223,13 @@ def preview(scenario: Scenario) -> Preview:
         first=asking.first if asking.initial and isinstance(asking.initial, int) else None,
         budget=asking.budget,
         farthest_corner=_farthest_corner(setup),
+        assumed=arm.assumptions,
         lacks_ompl=setup.leads_around is False,
         samples=_samples(setup),
-        plans_per_second=_plans_per_second(setup),
+        plans_per_second=rate,
+        no_demonstration=no_demonstration,
+        ignored_collisions=scenario.robot.ignore_collisions,
+        touching_at_start=touching_at_start(setup.workcell),
     )
 
 
@@ -251,20 +277,20 @@ def _samples(setup: Setup) -> PreviewedSamples:
             return PreviewedSamples()
 
 
-def _plans_per_second(setup: Setup) -> float | None:
-    """Measured with one demonstration on instances from all over the work area."""
+def _plans_per_second(setup: Setup) -> tuple[float | None, str | None]:
+    """Measured with one demonstration on instances from all over the work area; or why not."""
     if setup.scenario.teacher.kind == "interactive":
-        return None
+        return None, None
     rng = np.random.default_rng(setup.scenario.seed)
     place = random_suggestion(setup.regions, rng)
     teacher = UsableLessons(setup.teacher, setup.learn)
     lesson = teacher.demonstrate(place, number=0, used=(), rng=rng)
     if lesson.recording is None:
-        return None
+        return None, lesson.remark
     demonstration = setup.learn(lesson.recording)
     shape = (PROBE, *setup.area.lower.shape)
     X_WO = setup.area.X_WO(rng.uniform(setup.area.lower, setup.area.upper, shape))
     setup.planner.any_success([demonstration], X_WO[:1], setup.workcell.start)
     began = time.perf_counter()
     setup.planner.any_success([demonstration], X_WO, setup.workcell.start)
-    return PROBE / (time.perf_counter() - began)
+    return PROBE / (time.perf_counter() - began), None

@@ -8,6 +8,7 @@ import numpy as np
 
 from drake_screw.errors import ScenarioError
 from drake_screw.robot import Arm, ScrewChain, Workcell
+from drake_screw.robot.ignored import Pair, remedy_for
 from drake_screw.scenario.schema import Scenario
 from drake_screw.screws import pose
 from drake_screw.tasks import WorkArea
@@ -78,20 +79,28 @@ def kept_within(scenario: Scenario, arm: Arm) -> ScrewChain:
     return replace(chain, lower=lower, upper=upper) if margin > 0.0 else chain
 
 
+def touching_at_start(workcell: Workcell, clearance: float = 0.0) -> tuple[Pair, ...]:
+    """Names of bodies that touch at the start, or keep less than a clearance in m, in pairs.
+
+    Objects are left out: where they stand is not known yet.
+    """
+    away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, FAR]
+    return workcell.colliding_bodies(workcell.start, pose(np.eye(3), away), clearance)
+
+
 def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     """Check that no obstacle touches the robot at the start, nor anything what the robot holds.
 
-    Where collisions are looked at, neither may the robot touch itself or the table there, since no
-    plan could succeed, and a clearance has to be kept. Objects are left out: where they stand is
-    not known yet.
+    Where collisions are looked at, by planning or by the simulated teacher, neither may the robot
+    touch itself or the table there, since nothing could succeed, and a clearance has to be kept.
 
     Raises:
         ScenarioError: something does.
     """
-    if not (workcell.obstacles or workcell.tool or scenario.planner.collision):
+    taught = scenario.teacher.kind == "simulated"
+    if not (workcell.obstacles or workcell.tool or scenario.planner.collision or taught):
         return
-    away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, FAR]
-    pairs = workcell.colliding_bodies(workcell.start, pose(np.eye(3), away))
+    pairs = touching_at_start(workcell)
 
     def touching(name: str) -> list[str]:
         return [other for pair in pairs if name in pair for other in pair if other != name]
@@ -113,22 +122,30 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
                 f"'{scenario.robot.base}'), or change robot.start.",
                 file=scenario.source,
             )
-    if pairs and scenario.planner.collision:
+    if pairs and (scenario.planner.collision or taught):
+        follows = "plan" if scenario.planner.collision else "demonstration of a simulated teacher"
         both = " and ".join(f"'{a}' touches '{b}'" for a, b in pairs)
         raise ScenarioError(
-            f"robot.start: {both} at the start, so that no plan can succeed",
-            remedy="Change robot.start, or mend the collision shapes of the robot's model; "
-            "planner.collision: false leaves collisions out.",
+            f"robot.start: {both} at the start, so that no {follows} can succeed",
+            remedy="Change robot.start, or robot.parked (fingers may be put apart), or mend the "
+            "collision shapes of the robot's model. Where they may touch, write "
+            f"{remedy_for(pairs)} in robot"
+            + (
+                "; planner.collision: false leaves collisions out."
+                if scenario.planner.collision and not taught
+                else "."
+            ),
             file=scenario.source,
         )
     kept = scenario.planner.clearance
-    near = workcell.colliding_bodies(workcell.start, pose(np.eye(3), away), kept) if kept else ()
+    near = touching_at_start(workcell, kept) if kept else ()
     if near:
         both = " and ".join(f"'{a}' and '{b}'" for a, b in near)
         raise ScenarioError(
             f"planner.clearance: {both} are nearer than {kept:g} m at the start, so that no plan "
             "can succeed",
-            remedy="Choose a smaller clearance, or change robot.start.",
+            remedy="Choose a smaller clearance, or change robot.start or robot.parked; between "
+            f"links that may come near, write {remedy_for(near)} in robot.",
             file=scenario.source,
         )
 

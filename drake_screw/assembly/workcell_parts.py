@@ -30,6 +30,8 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         block.base,
         block.parked,
         tool_config(scenario),
+        block.velocity_limits,
+        block.ignore_collisions,
     )
 
 

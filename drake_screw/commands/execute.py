@@ -38,6 +38,8 @@ def execute(
 
     With the arm's dynamics and controllers. Reports joint limits, velocities, tracking, deviation
     from the screws and contacts; writes a table and a recording that plays in the browser.
+
+    Exit code 0: something was executed as planned. 1: nothing was. 2: bad input.
     """
     if graphviz and json is not None:
         raise DrakeScrewError(
@@ -57,4 +59,6 @@ def execute(
         print(executions.station_graphviz(run))
         return
     count = 2 if per_region is None else per_region
-    output.present(executions.execute(run, per_region=count, instance=place, workers=workers))
+    done = executions.execute(run, per_region=count, instance=place, workers=workers)
+    output.present(done)
+    raise typer.Exit(0 if done.summary.flawless else 1)

@@ -88,6 +88,9 @@ def run(
             else open_run(resume, **pages.parts)
         )
         pages.open(job.setup)
+        if loaded.teacher.kind == "simulated" and not quiet:
+            for line in job.setup.workcell.arm.assumptions:
+                out.say(f"note: {line}")
         try:
             with RunConsole(out.console, job.setup.regions, quiet=quiet) as shown:
                 for _ in job.events([*pages.listeners, log, shown]):

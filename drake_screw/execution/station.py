@@ -22,13 +22,7 @@ from pydrake.multibody.plant import (
     MultibodyPlant,
     MultibodyPlantConfig,
 )
-from pydrake.multibody.tree import (
-    JointActuator,
-    JointIndex,
-    ModelInstanceIndex,
-    PdControllerGains,
-    RigidBody,
-)
+from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 from pydrake.systems.primitives import (
     LogVectorOutput,
@@ -38,18 +32,15 @@ from pydrake.systems.primitives import (
 
 from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
+from drake_screw.execution.motors import motorise
 from drake_screw.execution.wiring import drive, measured_state, resting
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.robot.ignored import ignore_collisions
 from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.robot.tool import let_touch
 from drake_screw.typing import Array
 
 Follower = ScrewPlanExecutor | JointPathSource
-
-STIFFNESS = 80.0  # 1/rad: position gains as multiples of a joint's greatest effort
-DAMPING = 0.05  # s: velocity gains as multiples of position gains
-UNRATED = 100.0  # N m, greatest effort assumed for gains where the model states none that is true
-MOST_EFFORT = 1e4  # N m; more than this is no statement
 
 
 @dataclass(frozen=True)
@@ -133,13 +124,14 @@ def build_station(
     parser = Parser(plant)
     added = add_robot(parser, robot)
     _, bodies = add_surroundings(plant, table, objects, obstacles)
-    _motorise(plant, added.models)
+    motorise(plant, added.models)
     for model in added.models:
         plant.set_gravity_enabled(model, False)
     plant.Finalize()
     _ignore_contacts_of_objects(plant, scene_graph, added.instances)
     if robot.tool is not None and added.tool is not None:
         let_touch(plant, scene_graph, added.tool, robot.tool.touches)
+    ignore_collisions(plant, scene_graph, added.models, robot.ignore_collisions)
     arm = _kinematics(robot)
     follower = builder.AddNamedSystem(
         "executor", ScrewPlanExecutor(arm) if follow_screws else JointPathSource(arm)
@@ -168,21 +160,6 @@ def build_station(
         diagram, plant, scene_graph, arm, follower, bodies, measured, desired, parked,
         columns,
     )  # fmt: skip
-
-
-def _motorise(plant: MultibodyPlant, robot: Sequence[ModelInstanceIndex]) -> None:
-    """Position control of every joint with one degree of freedom, within the model's efforts."""
-    driven: dict[JointIndex, JointActuator] = {}
-    for index in plant.GetJointActuatorIndices():
-        actuator = plant.get_joint_actuator(index)
-        driven.setdefault(actuator.joint().index(), actuator)
-    for joint in (plant.get_joint(i) for model in robot for i in plant.GetJointIndices(model)):
-        if joint.num_velocities() != 1:
-            continue
-        actuator = driven.get(joint.index()) or plant.AddJointActuator(joint.name(), joint)
-        effort = actuator.effort_limit()
-        p = STIFFNESS * (effort if effort < MOST_EFFORT else UNRATED)
-        actuator.set_controller_gains(PdControllerGains(p=p, d=DAMPING * p))
 
 
 def _ignore_contacts_of_objects(

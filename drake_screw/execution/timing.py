@@ -21,9 +21,6 @@ from drake_screw.screws import inverse, log
 from drake_screw.screws.rotations import skew
 from drake_screw.typing import Array
 
-UNLIMITED = 1e3
-"""rad/s (or m/s), put in place of an infinite velocity limit."""
-
 STILL = 1e-6  # rad, joint motion of a segment that does not move
 
 
@@ -199,7 +196,7 @@ def _timed(
         ends = np.array([0.0, 1.0])
         still = np.zeros((2, arm.n))
         return TimedSegment(X_WA, X_WB, limits.smoothing, ends, 0.0 * ends, q[[0, -1]], still)
-    velocity = limits.speed * np.minimum(arm.velocity_limits, UNLIMITED)
+    velocity = limits.speed * arm.velocity_limits
     acceleration = np.full(arm.n, limits.acceleration)
     law = smooth_law(spline(s, q), velocity, acceleration, limits.smoothing)
     return TimedSegment(X_WA, X_WB, law.period, law.s, law.rate, law.q, law.v)

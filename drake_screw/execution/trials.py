@@ -135,6 +135,7 @@ class TrialSummary:
         instances: how many there were to execute.
         executed: how many have a plan, which was simulated.
         done: how many of those ended as planned.
+        flawless: how many of those besides kept all limits and touched nothing.
         outside_limits, over_velocity, with_contact: how many had such a flaw.
         worst: of all that were executed; None if none was.
         without_plan: why there is none.
@@ -144,6 +145,7 @@ class TrialSummary:
     instances: int
     executed: int
     done: int
+    flawless: int
     outside_limits: int
     over_velocity: int
     with_contact: int
@@ -168,7 +170,10 @@ class TrialSummary:
                 f"error at the last pose     {_at_most(self.worst.final)}",
                 f"time                       {least:.1f} to {most:.1f}, mean {mean:.1f} s",
             ]
-        return "\n".join([*lines, *(f"  {remark}" for remark in self.flawed)])
+        lines += [f"  {remark}" for remark in self.flawed]
+        if not self.flawless:
+            lines.append("nothing was executed as planned")
+        return "\n".join(lines)
 
 
 def summarize(trials: Sequence[Trial]) -> TrialSummary:
@@ -186,6 +191,7 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
         instances=len(trials),
         executed=len(reports),
         done=sum(report.status.phase is Phase.DONE for report in reports),
+        flawless=sum(report.flawless for report in reports),
         outside_limits=sum(bool(report.outside) for report in reports),
         over_velocity=sum(report.velocity > 1.0 for report in reports),
         with_contact=sum(bool(report.contacts) for report in reports),

@@ -13,6 +13,8 @@ from drake_screw.errors import ModelError
 from drake_screw.robot.endless import is_endless, middles
 from drake_screw.robot.names import Instances, find_frame, find_joint
 from drake_screw.robot.screw_chain import ScrewChain
+from drake_screw.robot.velocities import assumed_in_words
+from drake_screw.robot.velocities import velocity_limits as resolved
 from drake_screw.screws import shift
 from drake_screw.typing import Array
 
@@ -20,9 +22,7 @@ from drake_screw.typing import Array
 class Arm:
     """Kinematics and limits of some revolute and prismatic joints of a finalized plant.
 
-    `owner` keeps alive what owns the plant: a plant does not keep its diagram. `joints` are the
-    plant's own, in the arm's order. A joint that turns may be without limits (`endless`, (n,)):
-    they are infinite then.
+    `owner` keeps alive what owns the plant: a plant does not keep its diagram.
 
     Args:
         plant: finalized; it stays the source of truth for everything here.
@@ -31,6 +31,14 @@ class Arm:
         parked: positions of other joints (rad, m) by name; the rest keep the plant's defaults.
         robot: the models that names are looked up in; all of the plant's if None. A name that
             several of them have is given with its model's, as "left::hand".
+        velocity_limits: rad/s (m/s) of the arm's joints by name, in place of the plant's.
+
+    Attributes:
+        joints: the plant's own, in the arm's order.
+        lower, upper: (n,) rad or m, position limits; infinite where there are none.
+        endless: (n,) bool, which joints are without: only those that turn may be.
+        velocity_limits: (n,) rad/s or m/s, finite and above 0.
+        assumed_velocities: names of the joints whose velocity limit is a default, for want of one.
 
     Raises:
         ModelError: a name the plant does not have (the message lists those it has), a joint that
@@ -46,6 +54,7 @@ class Arm:
         *,
         parked: Mapping[str, float] | None = None,
         robot: Instances | None = None,
+        velocity_limits: Mapping[str, float] | None = None,
     ) -> None:
         self.plant = plant
         self.owner: object = None
@@ -81,7 +90,9 @@ class Arm:
         self._columns = np.array([joint.position_start() for joint in joints])
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
-        self.velocity_limits = np.array([joint.velocity_upper_limits()[0] for joint in joints])
+        self.velocity_limits, self.assumed_velocities = resolved(
+            joints, velocity_limits or {}, self.joint_names
+        )
         self.endless = is_endless(self.lower, self.upper) & (np.array(self.units) == "rad")
         limited = np.isfinite(self.lower) & np.isfinite(self.upper)
         if not (limited | self.endless).all():
@@ -112,6 +123,12 @@ class Arm:
     def units(self) -> tuple[str, ...]:
         """The unit of each joint's position, "rad" or "m"."""
         return tuple("rad" if joint.type_name() == "revolute" else "m" for joint in self.joints)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What is taken for what the model does not state, a line each; none if it states all."""
+        units = dict(zip(self.joint_names, self.units, strict=True))
+        return assumed_in_words(self.assumed_velocities, units)
 
     def full_positions(self, q: ArrayLike) -> Array:
         """Positions of the whole plant; q (..., n) rad or m to (..., plant.num_positions())."""

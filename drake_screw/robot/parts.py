@@ -45,6 +45,8 @@ class RobotConfig:
     base: str = "base"
     parked: Mapping[str, float] = field(default_factory=dict)
     tool: ToolConfig | None = None
+    velocity_limits: Mapping[str, float] = field(default_factory=dict)
+    ignore_collisions: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,14 @@ class RobotInPlant(NamedTuple):
         """
         parked = {k: v for k, v in self.config.parked.items() if k not in self.held}
         config = self.config
-        return Arm(self.plant, config.joints, config.end_effector, parked=parked, robot=self.models)
+        return Arm(
+            self.plant,
+            config.joints,
+            config.end_effector,
+            parked=parked,
+            robot=self.models,
+            velocity_limits=config.velocity_limits,
+        )
 
 
 def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:

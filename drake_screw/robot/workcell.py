@@ -22,6 +22,7 @@ from pydrake.planning import (
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.arm import Arm
+from drake_screw.robot.ignored import ignore_collisions
 from drake_screw.robot.names import shown_name
 from drake_screw.robot.obstacles import ObstacleConfig
 from drake_screw.robot.parts import (
@@ -37,6 +38,10 @@ from drake_screw.typing import Array
 
 MANY = 100
 """Configurations from which on sharing them out among threads takes less time than it saves."""
+
+
+GRAZE = 1e-9
+"""m, between bodies that touch: rounding, since to be at a distance of 0 is to collide."""
 
 
 @dataclass(frozen=True)
@@ -154,17 +159,18 @@ class Workcell:
     def colliding_bodies(
         self, q: ArrayLike, X_WO: ArrayLike, clearance: float = 0.0
     ) -> tuple[tuple[str, str], ...]:
-        """Names of bodies that touch at q (n,), or are nearer than a clearance in m.
+        """Names of bodies that touch at q (n,), or are no farther apart than a clearance in m.
 
         In pairs, the robot's first; those that are nearest, or deepest in one another, come first.
         """
-        found = self.checker.CalcRobotClearance(self.positions(q, X_WO), clearance)
+        reach = clearance + GRAZE
+        found = self.checker.CalcRobotClearance(self.positions(q, X_WO), reach)
         distances = np.asarray(found.distances())
         robot, other = found.robot_indices(), found.other_indices()
         names = [
             (self.name(robot[i]), self.name(other[i]))
             for i in np.argsort(distances, kind="stable").tolist()
-            if distances[i] < clearance
+            if distances[i] <= reach
         ]
         return tuple(dict.fromkeys(names))
 
@@ -196,6 +202,7 @@ def build_workcell(
     if robot.tool is not None and added.tool is not None:
         arm.held(robot.tool.frame)
         let_touch(plant, scene_graph, added.tool, robot.tool.touches)
+    ignore_collisions(plant, scene_graph, added.models, robot.ignore_collisions)
     diagram = builder.Build()
     arm.owner = diagram
     checker = SceneGraphCollisionChecker(

@@ -40,6 +40,7 @@ class Certificate:
         delta_spent_over_attempts: whether the rounds share delta.
         attempt: number of the last round's attempt to certify, from 1.
         delta_of_attempt: its share of delta.
+        ignored_collisions: pairs of links that may touch.
         freedoms: symmetries that were taken for granted.
         approach: how the arm comes to the first guiding pose: "screw", or "free" for any joint
             motion.
@@ -71,6 +72,7 @@ class Certificate:
     delta_of_attempt: float | None = None
     clearance: float = 0.0
     joint_margin: float = 0.0
+    ignored_collisions: tuple[tuple[str, str], ...] = ()
     freedoms: tuple[Freedom, ...] = ()
     approach: Literal["screw", "free"] = "screw"
     led_around: bool | None = None
@@ -106,7 +108,8 @@ class Certificate:
                 f"Of the weakest region: {self.claim}.",
             ]
         freedoms = map(str, self.freedoms)
-        return (*shown, self._scope(), *freedoms, *self._fidelity(), self._evidence())
+        scope = self._scope(), *self._ignored()
+        return (*shown, *scope, *freedoms, *self._fidelity(), self._evidence())
 
     def _scope(self) -> str:
         if not self.collisions_checked:
@@ -126,6 +129,12 @@ class Certificate:
             f"in each region. To succeed is to have a plan {within} the joint limits of the "
             f"robot's model{collisions}.{self._way_there()}"
         )
+
+    def _ignored(self) -> tuple[str, ...]:
+        if not (self.collisions_checked and self.ignored_collisions):
+            return ()
+        pairs = ", ".join(f"{a} and {b}" for a, b in self.ignored_collisions)
+        return (f"Whether these touch is not looked at: {pairs}.",)
 
     def _way_there(self) -> str:
         if self.approach != "free":
@@ -209,6 +218,7 @@ def certificate(
         collisions_checked=setup.scenario.planner.collision,
         clearance=setup.scenario.planner.clearance,
         joint_margin=setup.scenario.planner.joint_margin,
+        ignored_collisions=setup.scenario.robot.ignore_collisions,
         strategy=bandit.name,
         guarantee=bandit.guarantee,
         freedoms=freedoms(setup.scenario),

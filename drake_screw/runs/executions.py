@@ -13,6 +13,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.why_not import why_not
 from drake_screw.errors import ModelError
 from drake_screw.execution import build_station, recording_html
+from drake_screw.execution.motors import assumed_motors, immovable
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
@@ -35,14 +36,17 @@ class Executions:
 
     Attributes:
         folder: with table, summary and recording.
+        assumed: what is taken for what the robot's model does not state, a line each.
         summary: what they show.
     """
 
     folder: Path
+    assumed: tuple[str, ...]
     summary: TrialSummary
 
     def __str__(self) -> str:
-        return f"{self.summary}\nwritten to {self.folder}"
+        notes = "".join(f"note: {line}\n" for line in self.assumed)
+        return f"{notes}{self.summary}\nwritten to {self.folder}"
 
 
 def execute(
@@ -125,7 +129,7 @@ def execute(
     remedy = "Executions are written beside the run; make its folder writable."
     with writing(folder, remedy):
         write_folder(folder, fill)
-    return Executions(folder, found)
+    return Executions(folder, _assumed(setup), found)
 
 
 def station_graphviz(run: PathLike) -> str:
@@ -141,18 +145,25 @@ def station_graphviz(run: PathLike) -> str:
 
 
 def _check_masses(setup: Setup) -> None:
-    arm, plant = setup.workcell.arm, setup.workcell.plant
-    context = plant.CreateDefaultContext()
-    plant.SetPositions(context, arm.full_positions(setup.workcell.start))
-    M = plant.CalcMassMatrix(context)
-    for joint in arm.joints:
-        place = joint.velocity_start()
-        if M[place, place] <= 0.0:
-            raise ModelError(
-                f"joint '{joint.name()}' cannot be driven: what it moves has no inertia",
-                remedy="Give the links an <inertial> with mass and inertia; planning does without.",
-                file=setup.workcell.model_file,
-            )
+    workcell = setup.workcell
+    positions = workcell.arm.full_positions(workcell.start)
+    found = immovable(workcell.plant, workcell.robot, positions)
+    if found is not None:
+        joint, links = found
+        named = (
+            f"its links {', '.join(links)} have no mass" if links else "none has any about its axis"
+        )
+        raise ModelError(
+            f"joint '{joint}' cannot be driven: what it moves has no inertia; {named}",
+            remedy="Give the links an <inertial> with mass and inertia; planning does without.",
+            file=workcell.model_file,
+        )
+
+
+def _assumed(setup: Setup) -> tuple[str, ...]:
+    arm, workcell = setup.workcell.arm, setup.workcell
+    motors = assumed_motors(workcell.plant, workcell.robot, arm.joint_names)
+    return (*arm.assumptions, *motors)
 
 
 def _fresh_instances(

@@ -11,12 +11,14 @@ from drake_screw.acquisition import RoundFinished
 from drake_screw.assembly.setup import Setup
 from drake_screw.files import writing
 from drake_screw.runs.directory import UNWRITABLE_RUN
+from drake_screw.typing import Array
 from drake_screw.visualization import Scene, save_heat_map, save_run_figure
 from drake_screw.visualization.lifetime import scratch
 from drake_screw.visualization.outlines import outlines
 
 PICTURE = "rounds.png"
 """The course of the whole run."""
+SCENE = "meshcat.html"
 
 
 def draw_round(setup: Setup, event: RoundFinished, stem: Path) -> None:
@@ -25,13 +27,27 @@ def draw_round(setup: Setup, event: RoundFinished, stem: Path) -> None:
     save_heat_map(event, event.regions, stem, scenario=setup.scenario.name, things=things)
 
 
-def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> None:
+def draw_run(
+    setup: Setup,
+    rounds: Sequence[RoundFinished],
+    folder: Path,
+    *,
+    asked: Array | None = None,
+) -> None:
     """Draw a whole run into a folder: rounds.png, rounds.svg and meshcat.html.
+
+    Of a run without a round there is just the scene, and in it the place that was `asked` for,
+    (k, 3), if there is one.
 
     Raises:
         RunDirectoryError: they cannot be written.
     """
     if not rounds:
+        with writing(folder, UNWRITABLE_RUN), scratch():
+            scene = make_scene(setup)
+            if asked is not None:
+                scene.show_suggestion(asked)
+            scene.save_html(folder / SCENE)
         return
     name, regions = setup.scenario.name, [event.regions for event in rounds]
     stem = folder / PICTURE.removesuffix(".png")
@@ -45,7 +61,7 @@ def draw_run(setup: Setup, rounds: Sequence[RoundFinished], folder: Path) -> Non
             things=outlines(setup.obstacles),
         )
         with scratch():
-            _save_scene(setup, rounds, folder / "meshcat.html")
+            _save_scene(setup, rounds, folder / SCENE)
 
 
 def _save_scene(setup: Setup, rounds: Sequence[RoundFinished], file: Path) -> None:

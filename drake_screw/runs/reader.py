@@ -26,7 +26,7 @@ from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.codec import REMEDY, load_evaluation
-from drake_screw.runs.directory import INSTANCES, RunDirectory
+from drake_screw.runs.directory import INSTANCES, SCENARIO, RunDirectory
 from drake_screw.visualization.attempt import Attempt, attempt, collided
 from drake_screw.visualization.browsing import Catalogue, catalogue
 from drake_screw.visualization.rounds import cells
@@ -177,6 +177,14 @@ class RunReader:
             RunDirectoryError: no round is finished yet.
             ScenarioError: there is no such round.
         """
+        record = self.directory.record
+        if self.rounds == 0 and record.ended:
+            raise RunDirectoryError(
+                f"this run ended before its first round: {record.reason}",
+                remedy="Look at meshcat.html in it, change its scenario where that is in the way, "
+                f"and see what drake-screw check says of {self.directory.path / SCENARIO}.",
+                file=self.directory.path,
+            )
         if self.rounds == 0:
             raise RunDirectoryError(
                 "no round of this run is finished yet",

@@ -17,6 +17,7 @@ from drake_screw.acquisition import (
     RoundFinished,
     Status,
 )
+from drake_screw.acquisition.loop import initial_places
 from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.demonstrations import Demonstration
@@ -161,7 +162,7 @@ class Run:
             if event.round >= self.reader.rounds:
                 self.directory.add_round(event, lambda e, stem: draw_round(self.setup, e, stem))
         elif isinstance(event, Finished):
-            draw_run(self.setup, self.reader.all_rounds(), self.directory.path)
+            draw_all(self)
             rounds = self.directory.record.rounds
             self.directory.save(
                 status=event.status,
@@ -278,8 +279,17 @@ def resumable(run: Run) -> Run:
 
 def redraw(run: Run) -> None:
     """Draw the pictures of all rounds, and of the whole run, again."""
-    rounds = run.reader.all_rounds()
-    for event in rounds:
+    for event in run.reader.all_rounds():
         stem = run.directory.round_folder(event.round) / "heat_map"
         draw_round(run.setup, event, stem)
-    draw_run(run.setup, rounds, run.directory.path)
+    draw_all(run)
+
+
+def draw_all(run: Run) -> None:
+    """Draw the pictures of a whole run; where it has no round, the place that was asked for."""
+    reader, wanted = run.reader, run.setup.scenario.demonstrations.initial
+    number, asked = len(run.directory.record.demonstrations), None
+    if reader.rounds == 0 and isinstance(wanted, int) and number < wanted:
+        seed, regions = run.setup.scenario.seed, run.setup.regions
+        asked = initial_places(regions, seed, number, run.setup.first)[0].x_y_yaw
+    draw_run(run.setup, reader.all_rounds(), run.directory.path, asked=asked)

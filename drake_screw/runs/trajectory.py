@@ -31,6 +31,7 @@ class Trajectory:
         margin: how near a joint comes to a limit, in parts of its range.
         tightest: that joint.
         outside: whether the instance lies outside the work area.
+        assumed: what is taken for what the robot's model does not state, a line each.
     """
 
     output: Path
@@ -42,9 +43,11 @@ class Trajectory:
     margin: float
     tightest: str
     outside: bool
+    assumed: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         lines = ["note: the instance lies outside the work area"] if self.outside else []
+        lines += [f"note: {line}" for line in self.assumed]
         return "\n".join(
             [
                 *lines,
@@ -91,6 +94,7 @@ def write_trajectory(
         margin=best.margin,
         tightest=best.tightest,
         outside=not setup.area.contains(x_y_yaw),
+        assumed=setup.workcell.arm.assumptions,
     )
 
 

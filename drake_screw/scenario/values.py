@@ -148,4 +148,15 @@ Positive = Annotated[float, Field(gt=0)]
 Probability = Annotated[float, Field(gt=0, lt=1)]
 Option = bool | int | float | str
 Options = Annotated[dict[str, Option], BeforeValidator(_nothing_is_empty)]
+Pairs = Annotated[
+    tuple[tuple[str, str], ...],
+    WithJsonSchema(
+        {
+            "type": "array",
+            "title": "a list of pairs of names",
+            "items": {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2},
+        }
+    ),
+]
+Limits = Annotated[dict[str, Positive], BeforeValidator(_nothing_is_empty)]
 Angles = Annotated[dict[str, float], BeforeValidator(_nothing_is_empty)]

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from drake_screw.errors import suggestion
 from drake_screw.scenario.block import Block, Problem
 from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.scenario.values import (
@@ -15,8 +16,10 @@ from drake_screw.scenario.values import (
     RADIANS,
     Angles,
     Interval,
+    Limits,
     ModelName,
     Name,
+    Pairs,
     Positive,
 )
 from drake_screw.tasks import AXES, Symmetry
@@ -37,9 +40,32 @@ class RobotBlock(Block):
     """where other joints rest; joints not named rest at the model's default"""
     tool: ToolBlock | None = None
     """what the end effector holds"""
+    velocity_limits: Annotated[Limits, Field(json_schema_extra={"unit": "rad/s"})] = Field(
+        default={}
+    )
+    """greatest velocities of joints of the arm (of prismatic ones in m/s), in place of the model's;
+    a joint that has none there either moves at 1 rad/s or 0.25 m/s. They matter to the simulated
+    teacher, to exports and to executions"""
+    ignore_collisions: Pairs = ()
+    """pairs of links that may touch, [[left_finger, right_finger], ...]: whether they do is not
+    looked at. One of a pair may be `table` or an obstacle"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
+        for index, (one, other) in enumerate(self.ignore_collisions):
+            if one == other:
+                yield Problem(
+                    ("ignore_collisions", index),
+                    f"'{one}' is there twice",
+                    "Name the two links that may touch; a link never collides with itself.",
+                )
+        for name in self.velocity_limits:
+            if name not in self.joints:
+                yield Problem(
+                    ("velocity_limits", name),
+                    f"'{name}' is no joint of the arm",
+                    suggestion(name, self.joints, "Joints"),
+                )
         if len(self.start) != len(self.joints):
             yield Problem(
                 ("start",),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -119,9 +120,9 @@ def given(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         asked.append((str(run), instance, str(output)))
         return ""
 
-    def execute(run: Path, *, instance: Any, **others: Any) -> str:
+    def execute(run: Path, *, instance: Any, **others: Any) -> SimpleNamespace:
         asked.append((str(run), instance))
-        return ""
+        return SimpleNamespace(summary=SimpleNamespace(flawless=1))
 
     monkeypatch.setattr(trajectory, "write_trajectory", write)
     monkeypatch.setattr(executions, "execute", execute)

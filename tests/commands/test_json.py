@@ -114,12 +114,13 @@ def test_execute(command: Command, certified: Path) -> None:
     check_keys("execute", result)
     summary = result["summary"]
     assert (summary["instances"], summary["executed"], summary["done"]) == (1, 1, 1)
+    assert summary["flawless"] == 1
     assert 0.0 < summary["worst"]["tracking"]["position"] < 5e-3
     assert Path(result["folder"], "executions.csv").is_file()
     assert "done                       1 of 1" in err
     code, out, _ = command(*args, 5, 5)
     nothing = json.loads(out)["summary"]
-    assert (code, nothing["executed"], nothing["worst"]) == (0, 0, None)
+    assert (code, nothing["executed"], nothing["flawless"], nothing["worst"]) == (1, 0, 0, None)
     (remark,) = nothing["without_plan"]
     assert remark["x_y_yaw"] == [[5.0, 5.0, 0.0]]
     assert remark["text"].startswith("no plan: ")

@@ -90,8 +90,17 @@ def test_the_summary_counts_and_names_what_went_wrong(trials) -> None:
     assert "region 3" not in text
 
 
+def test_what_is_done_and_touches_nothing_is_flawless(trials, executed) -> None:
+    assert summarize(trials).flawless == 1
+    touching = replace(executed[0].report, contacts=(Contact(("hand", "bowl"), 1.0, 1, 40.0),))
+    found = summarize([Trial(3, PLACE, "demo_01", "", replace(executed[0], report=touching))])
+    assert (found.done, found.flawless) == (1, 0)
+
+
 def test_nothing_executed_is_said_too(trials) -> None:
     assert str(summarize(trials[2:])).splitlines()[0] == "1 instances, 0 executed"
+    for some, text in ((trials[1:], "nothing was executed as planned"), (trials, "region 4")):
+        assert text in str(summarize(some)).splitlines()[-1]
 
 
 def test_the_recording_is_one_page_with_every_execution(config, executed) -> None:

@@ -64,3 +64,52 @@ def urdf(
         for name in transmissions
     ]
     return "".join([*parts, extra, "</robot>"])
+
+
+def fingers(gap: float = 0.0, *, half: float = 0.0123) -> str:
+    """Two fingers of boxes on the hand, so far apart (m) where they rest: more of the model.
+
+    Args:
+        gap: m.
+        half: m, of a finger's thickness.
+    """
+    parts = []
+    for name, side in (("left", 1), ("right", -1)):
+        y = side * (half + gap / 2.0)
+        parts.append(
+            f"<link name='{name}'><inertial><mass value='0.1'/><inertia ixx='1e-4' iyy='1e-4' "
+            "izz='1e-4' ixy='0' ixz='0' iyz='0'/></inertial>"
+            f"<collision name='{name}_box'><origin xyz='0 {y} 0.03'/>"
+            f"<geometry><box size='0.02 {2 * half} 0.06'/></geometry></collision></link>"
+            f"<joint name='{name}_slide' type='prismatic'><parent link='hand'/>"
+            f"<child link='{name}'/><origin xyz='0 0 0.05'/><axis xyz='0 {side} 0'/>"
+            "<limit lower='0' upper='0.04' velocity='1' effort='10'/></joint>"
+        )
+    return "".join(parts)
+
+
+def scenario(model: str = "six.urdf", *, robot: str = "", more: str = "") -> str:
+    """A scenario of pouring with the arm, as YAML text.
+
+    Args:
+        model: file of the model.
+        robot: more lines of the block `robot`, indented by two.
+        more: further blocks.
+    """
+    return f"""
+name: six
+robot:
+  model: {model}
+  joints: [{", ".join(NAMES)}]
+  end_effector: hand
+  start: [{", ".join(map(str, START))}]
+{robot}
+table: {{center: [0.35, 0.0], size: [1.1, 1.3], top: 0.0}}
+objects:
+  - {{name: bowl, x: [0.5, 0.7], y: [-0.2, 0.2], z: 0.0, radius: 0.08, height: 0.06}}
+regions:
+  grid: {{x: 1, y: 2}}
+coverage: {{beta: 0.7, epsilon: 0.15}}
+teacher: {{kind: simulated, motion: pouring}}
+{more}
+"""

@@ -19,7 +19,7 @@ EARLIER = SimpleNamespace(samples=48, attempted=False)
 ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 
 
-def scenario_of(collision=False, objects=(), tool=None, approach="screw", **kept):
+def scenario_of(collision=False, objects=(), tool=None, approach="screw", ignored=(), **kept):
     return SimpleNamespace(
         coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
         planner=SimpleNamespace(
@@ -29,7 +29,7 @@ def scenario_of(collision=False, objects=(), tool=None, approach="screw", **kept
             turns=24,
         ),
         objects=objects,
-        robot=SimpleNamespace(tool=tool),
+        robot=SimpleNamespace(tool=tool, ignore_collisions=ignored),
     )
 
 
@@ -94,6 +94,16 @@ def test_what_is_kept_is_said() -> None:
         "model along which the robot keeps 0.02 m from all else and itself." in text
     )
     assert "touches nothing" not in text
+
+
+def test_what_may_touch_is_said() -> None:
+    pairs = (("left_finger", "right_finger"), ("base", "table"))
+    for collision in (True, False):
+        scenario = scenario_of(collision=collision, ignored=pairs)
+        stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
+        assert stated.ignored_collisions == pairs
+        said = "Whether these touch is not looked at: left_finger and right_finger, base and table."
+        assert (said in text) is collision
 
 
 def test_it_says_what_was_taken_for_granted() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -92,23 +93,22 @@ class SimulatedTeacher:
         """
         X_WO = self.area.X_WO(suggestion.x_y_yaw)
         x, y = suggestion.x_y_yaw[0, :2]
-        unreached = limited = collided = 0
+        unreached = limited = 0
+        touched: Counter[tuple[str, str]] = Counter()
         for attempt in range(ATTEMPTS):
             rehearsal = self._rehearse(X_WO, rng, stretched=attempt > 0)
             unreached += int(np.count_nonzero(~rehearsal.paths.arrived))
             limited += int(np.count_nonzero(rehearsal.paths.arrived & ~rehearsal.within))
             possible = np.flatnonzero(np.isfinite(rehearsal.comfort))
             for choice in possible[np.argsort(-rehearsal.comfort[possible])]:
-                if self.workcell.collides(
-                    rehearsal.paths.q[choice, ::COLLISION_STRIDE], X_WO
-                ).any():
-                    collided += 1
+                if hit := self._touching(rehearsal.paths.q[choice, ::COLLISION_STRIDE], X_WO):
+                    touched[hit] += 1
                     continue
                 q = self._perform(rehearsal, int(choice), rng)
                 if (self.workcell.arm.margin(q) < MARGIN - MARGIN_TOLERANCE).any():
                     limited += 1
-                elif self.workcell.collides(q, X_WO).any():
-                    collided += 1
+                elif hit := self._touching(q, X_WO):
+                    touched[hit] += 1
                 else:
                     remark = f"simulated {self.motion} at x={x:.2f}, y={y:.2f}"
                     return Lesson(self._recording(q, X_WO, number), remark)
@@ -116,8 +116,16 @@ class SimulatedTeacher:
             None,
             f"no feasible demonstration at x={x:.2f}, y={y:.2f}: of {ATTEMPTS * CANDIDATES} ways "
             f"of {self.motion}, {unreached} are out of reach, {limited} meet a joint limit and "
-            f"{collided} collide",
+            f"{touched.total()} collide{_most_often(touched)}",
         )
+
+    def _touching(self, q: Array, X_WO: Array) -> tuple[str, str] | None:
+        """Which bodies touch first along q (m, n); None if none do."""
+        collides = self.workcell.collides(q, X_WO)
+        if not collides.any():
+            return None
+        pairs = self.workcell.colliding_bodies(q[int(np.argmax(collides))], X_WO)
+        return pairs[0] if pairs else ("the robot", "something")
 
     def _rehearse(self, X_WO: Array, rng: np.random.Generator, *, stretched: bool) -> _Rehearsal:
         rest, p_WO = self._chain.pose(self.workcell.start), X_WO[0, :3, 3]
@@ -160,3 +168,10 @@ class SimulatedTeacher:
             task_objects=(self.area.objects[0].name,) if len(self.area.objects) > 1 else (),
         )
         return replace(checked(recording, arm.lower, arm.upper), notes=())
+
+
+def _most_often(touched: Counter[tuple[str, str]]) -> str:
+    if not touched:
+        return ""
+    ((robot, other), count), *_ = touched.most_common(1)
+    return f" ({robot} with {other} in {count} of them)"
