@@ -30,8 +30,11 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         block.base,
         block.parked,
         tool_config(scenario),
-        block.velocity_limits,
-        block.ignore_collisions,
+        velocity_limits=block.velocity_limits,
+        ignore_collisions=block.ignore_collisions,
+        packages=block.packages,
+        xacro=block.xacro,
+        srdf=block.srdf,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, SceneGraph
 from pydrake.multibody.plant import MultibodyPlant
@@ -10,6 +10,9 @@ from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody
 
 from drake_screw.errors import ModelError, unknown
 from drake_screw.robot.names import called, scoped
+from drake_screw.robot.packages import ModelPlace
+from drake_screw.robot.parts import RobotConfig
+from drake_screw.robot.srdf import IgnoredPair, read_srdf, srdf_file
 
 KEY = "robot.ignore_collisions"
 
@@ -70,3 +73,48 @@ def _called(name: str, links: Sequence[RigidBody], fixed: Sequence[RigidBody]) -
 def remedy_for(pairs: Sequence[Pair]) -> str:
     """The lines of a scenario that let pairs touch."""
     return f"ignore_collisions: [{', '.join(f'[{a}, {b}]' for a, b in pairs)}]"
+
+
+def ignored_pairs(robot: RobotConfig) -> tuple[IgnoredPair, ...]:
+    """Pairs of links of a robot that may touch one another, by its SRDF.
+
+    Raises:
+        ModelError: that cannot be found or read.
+    """
+    if robot.srdf is None:
+        return ()
+    packages = ModelPlace(robot.model, robot.packages).packages
+    return read_srdf(srdf_file(robot.srdf, packages), packages).pairs
+
+
+def ignore(
+    plant: MultibodyPlant,
+    scene_graph: SceneGraph,
+    robot: Sequence[ModelInstanceIndex],
+    pairs: Iterable[Sequence[str]],
+) -> tuple[str, ...]:
+    """Let links of a robot touch one another without counting it as a collision.
+
+    Args:
+        plant: finalized.
+        scene_graph: that the plant is registered with, not yet in a diagram that was built.
+        robot: the robot's model instances.
+        pairs: whose first two entries are names of links.
+
+    Returns:
+        Names that the robot does not have, each once, in order.
+    """
+    links = [plant.get_body(i) for model in robot for i in plant.GetBodyIndices(model)]
+    bodies = {name: link for link in links for name in (scoped(link), link.name())}
+    filters = CollisionFilterDeclaration()
+    lacking: dict[str, None] = {}
+    for pair in (pair[:2] for pair in pairs):
+        missing = [name for name in pair if name not in bodies]
+        lacking.update(dict.fromkeys(missing))
+        if not missing:
+            shapes = [
+                GeometrySet(plant.GetCollisionGeometriesForBody(bodies[name])) for name in pair
+            ]
+            filters.ExcludeBetween(*shapes)
+    scene_graph.collision_filter_manager().Apply(filters)
+    return tuple(lacking)

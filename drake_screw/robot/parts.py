@@ -16,14 +16,15 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
 
 from drake_screw.errors import ModelError
-from drake_screw.resources import MODEL_SUFFIXES, find_resource
+from drake_screw.robot.addresses import add_packages
 from drake_screw.robot.arm import Arm
 from drake_screw.robot.base import fix_base, set_defaults, without_furniture
-from drake_screw.robot.directives import model_files
+from drake_screw.robot.directives import check_models, model_files
 from drake_screw.robot.mimic import follow, mimics_in
-from drake_screw.robot.model_text import check_collision_shapes
+from drake_screw.robot.model_file import ModelFile, model_file
 from drake_screw.robot.names import check_apart
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
+from drake_screw.robot.packages import ModelPlace
 from drake_screw.robot.shapes import register
 from drake_screw.robot.tool import ToolConfig, add_tool
 
@@ -47,6 +48,9 @@ class RobotConfig:
     tool: ToolConfig | None = None
     velocity_limits: Mapping[str, float] = field(default_factory=dict)
     ignore_collisions: tuple[tuple[str, str], ...] = ()
+    packages: Mapping[str, Path] = field(default_factory=dict)
+    xacro: Mapping[str, object] = field(default_factory=dict)
+    srdf: str | None = None
 
 
 @dataclass(frozen=True)
@@ -74,7 +78,7 @@ class RobotInPlant(NamedTuple):
     Attributes:
         config: what it is.
         plant: that it was added to.
-        file: of its model.
+        model: the file that it was read from.
         models: all models that the file adds; names are looked up in these.
         instances: those that are the robot. A model without joints that stands by itself, a table
             that directives add beside an arm, is none of it.
@@ -84,7 +88,7 @@ class RobotInPlant(NamedTuple):
 
     config: RobotConfig
     plant: MultibodyPlant
-    file: Path
+    model: ModelFile
     models: tuple[ModelInstanceIndex, ...]
     instances: tuple[ModelInstanceIndex, ...]
     tool: RigidBody | None
@@ -119,11 +123,14 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
             collision shape that Drake would not take as it is, or cannot be fixed as wanted.
     """
     plant = parser.plant()
-    file = find_resource("models", robot.model, MODEL_SUFFIXES)
-    files = model_files(file, parser.package_map())
-    for _, one in files:
-        check_collision_shapes(one)
-    models = _read(parser, file)
+    place = ModelPlace(robot.model, robot.packages)
+    shapes = plant.geometry_source_is_registered()
+    model = model_file(place, robot.xacro, shapes=shapes)
+    file = model.file
+    add_packages(parser.package_map(), model.read, place.packages, meshes=shapes)
+    files = model_files(model.read, parser.package_map())
+    check_models(files)
+    models = _read(parser, model)
     _LOG.debug("read %s", file)
     mimics = tuple(mimic for name, one in files for mimic in mimics_in(one, name))
     try:
@@ -134,19 +141,19 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     except ModelError as error:
         raise ModelError(error.message, remedy=error.remedy, file=error.file or file) from error
     tool = None if robot.tool is None else add_tool(plant, models, robot.tool)
-    return RobotInPlant(robot, plant, file, models, instances, tool, held)
+    return RobotInPlant(robot, plant, model, models, instances, tool, held)
 
 
-def _read(parser: Parser, file: Path) -> tuple[ModelInstanceIndex, ...]:
+def _read(parser: Parser, model: ModelFile) -> tuple[ModelInstanceIndex, ...]:
     try:
-        models = tuple(parser.AddModels(str(file)))
+        models = tuple(parser.AddModels(str(model.read)))
     except (RuntimeError, ValueError, SystemExit) as error:
-        raise ModelError(f"Drake cannot read this model: {error}", file=file) from error
+        raise ModelError(f"Drake cannot read this model: {error}", file=model.file) from error
     if not models:
         raise ModelError(
             "there is no model in this file",
             remedy="Directives name the robot's models, each in an add_model.",
-            file=file,
+            file=model.file,
         )
     return models
 
