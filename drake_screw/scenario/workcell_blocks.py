@@ -39,7 +39,8 @@ class RobotBlock(Block):
     start: Annotated[tuple[float, ...], RADIANS]
     """joint angles from which every plan starts, in the order of `joints`"""
     base: str = "base"
-    """name of the frame fixed to the world's origin"""
+    """name of the link or frame at the world's origin, z up, whatever holds the robot; what is
+    between it and the model's root is held. `world` leaves the model where it puts itself"""
     parked: Annotated[Angles, RADIANS] = Field(default={})
     """where other joints rest; joints not named rest at the model's default"""
     tool: ToolBlock | None = None
