@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pydrake.systems.analysis import Simulator
 
 from drake_screw.errors import ModelError
 from drake_screw.execution.station import build_station
@@ -53,6 +54,24 @@ def test_they_are_held_there_when_plans_are_executed(tmp_path: Path) -> None:
     context = station.plant.GetMyContextFromRoot(station.context([0.1, 0.2, 0.3], NONE))
     other = station.plant.GetJointByName("other").GetOnePosition(context)
     assert other == pytest.approx(-0.5)
+
+
+def test_joints_above_the_base_are_held_beside_joints_that_mimic(tmp_path: Path) -> None:
+    """Drake has constraints for those, and removes no joint while there are any."""
+    file = tmp_path / "small.urdf"
+    lift = link("foot") + joint("lift", "foot", "base_link", "prismatic", "0 0 0.5")
+    for before in (lift, "<link name='world'/>" + joint("w", "world", "base_link", "fixed")):
+        file.write_text(urdf(before, FINGERS))
+        robot = RobotConfig(
+            str(file), ("j1", "j2", "j3"), "l3", (0.0,) * 3, "base_link", {"finger": 0.3}
+        )
+        assert resting(build_workcell(robot), "finger", "other") == pytest.approx([0.3, -0.5])
+        station = build_station(robot)
+        root = station.context([0.1, 0.2, 0.3], NONE)
+        Simulator(station.diagram, root).AdvanceTo(0.1)
+        context = station.plant.GetMyContextFromRoot(root)
+        other = station.plant.GetJointByName("other").GetOnePosition(context)
+        assert other == pytest.approx(-0.5, abs=1e-3)
 
 
 def test_a_joint_of_the_arm_neither_follows_nor_leads(tmp_path: Path) -> None:
