@@ -12,7 +12,7 @@ from drake_screw.errors import ModelError
 from drake_screw.execution.station import build_station
 from drake_screw.robot import RobotConfig, Workcell, build_workcell
 from drake_screw.robot.mimic import Mimic, mimics_in
-from tests.robot.test_base import NONE, joint, link, urdf
+from tests.robot.test_base import BALL, NONE, joint, link, urdf
 
 FINGERS = (
     link("right")
@@ -74,10 +74,12 @@ def test_joints_above_the_base_are_held_beside_joints_that_mimic(tmp_path: Path)
         assert other == pytest.approx(-0.5, abs=1e-3)
 
 
-def test_a_joint_of_the_arm_neither_follows_nor_leads(tmp_path: Path) -> None:
+def test_a_joint_of_the_arm_neither_follows_nor_leads_what_may_collide(tmp_path: Path) -> None:
     leads = FINGERS.replace("mimic joint='finger'", "mimic joint='j3'")
     with pytest.raises(ModelError, match="'other' mimics joint 'j3', and 'j3' is a joint of the"):
         build_workcell(config(tmp_path, leads))
+    bare = leads.replace(BALL, "")
+    assert resting(build_workcell(config(tmp_path, bare)), "other") == [0.1]
     follows = urdf("", "").replace(
         "<child link='l3'/>", "<child link='l3'/><mimic joint='j2' multiplier='-1'/>"
     )
