@@ -15,7 +15,7 @@ from drake_screw.robot.screw_chain import ScrewChain
 from drake_screw.robot.velocities import assumed_in_words
 from drake_screw.robot.velocities import velocity_limits as resolved
 from drake_screw.screws import shift
-from drake_screw.screws.turns import is_endless, middles
+from drake_screw.screws.endless import is_endless, middles
 from drake_screw.typing import Array
 
 

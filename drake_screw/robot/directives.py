@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
-from collections.abc import Iterable
-from contextlib import suppress
 from pathlib import Path
 
 from pydrake.multibody.parsing import (
@@ -14,8 +11,6 @@ from pydrake.multibody.parsing import (
 )
 
 from drake_screw.errors import ModelError
-from drake_screw.robot.model_text import check_collision_shapes
-from drake_screw.robot.model_xml import parse_model
 
 SUFFIX = ".dmd.yaml"
 
@@ -45,16 +40,3 @@ def model_files(file: Path, packages: PackageMap) -> tuple[tuple[str | None, Pat
             "that has a package.xml.",
             file=file,
         ) from error
-
-
-def check_models(files: Iterable[tuple[str | None, Path]]) -> None:
-    """Look at the collision shapes of models that directives add, as of one that stands alone.
-
-    Raises:
-        ModelError: Drake would not take one as it is.
-    """
-    for name, file in files:
-        if name is None or file.suffix.lower() not in (".sdf", ".urdf"):
-            continue
-        with suppress(ET.ParseError, OSError):
-            check_collision_shapes(parse_model(file.read_bytes()), file)

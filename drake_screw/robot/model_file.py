@@ -6,6 +6,7 @@ import hashlib
 import logging
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -111,6 +112,20 @@ def model_file(
         told = [hash, *("\0".join(entry) for entry in (*missing, *meshes.converted))]
         hash = hashlib.sha256("\n".join(told).encode()).hexdigest()
     return ModelFile(file, _kept(model_xml(root), f"{_stem(file)}{suffix}"), hash, meshes.left_out)
+
+
+def check_shapes_of(file: Path) -> None:
+    """Refuse collision shapes of a model's file that directives add; see `check_collision_shapes`.
+
+    A file that is neither URDF nor SDF, or that cannot be parsed, is left to Drake.
+
+    Raises:
+        ModelError: there is one.
+    """
+    if file.suffix.lower() not in KINDS.values():
+        return
+    with suppress(ET.ParseError, OSError):
+        check_collision_shapes(parse_model(file.read_bytes()), file)
 
 
 def _mend(root: ET.Element, place: ModelPlace, *, shapes: bool) -> bool:

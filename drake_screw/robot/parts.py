@@ -19,9 +19,9 @@ from drake_screw.errors import ModelError
 from drake_screw.robot.addresses import add_packages
 from drake_screw.robot.arm import Arm
 from drake_screw.robot.base import fix_base, set_defaults, without_furniture
-from drake_screw.robot.directives import check_models, model_files
+from drake_screw.robot.directives import model_files
 from drake_screw.robot.mimic import follow, mimics_in
-from drake_screw.robot.model_file import ModelFile, model_file
+from drake_screw.robot.model_file import ModelFile, check_shapes_of, model_file
 from drake_screw.robot.names import check_apart
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
 from drake_screw.robot.packages import ModelPlace
@@ -78,7 +78,7 @@ class RobotInPlant(NamedTuple):
     Attributes:
         config: what it is.
         plant: that it was added to.
-        model: the file that it was read from.
+        model: its model, as the user has it and as Drake reads it.
         models: all models that the file adds; names are looked up in these.
         instances: those that are the robot. A model without joints that stands by itself, a table
             that directives add beside an arm, is none of it.
@@ -129,7 +129,9 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     file = model.file
     add_packages(parser.package_map(), model.read, place.packages, meshes=shapes)
     files = model_files(model.read, parser.package_map())
-    check_models(files)
+    for _, one in files:
+        if one != model.read:
+            check_shapes_of(one)
     models = _read(parser, model)
     _LOG.debug("read %s", file)
     mimics = tuple(mimic for name, one in files for mimic in mimics_in(one, name))

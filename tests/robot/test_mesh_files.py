@@ -240,7 +240,8 @@ def test_oddities_of_published_models_are_no_matter(
             ("hand", "revolute", ""),
             ("fixed", "fixed", "<mimic joint='hand_joint'/>"),
             ("left", "revolute", "<mimic joint='fixed_joint'/>"),
-            ("right", "revolute", "<mimic joint='hand_joint'/>"),
+            ("finger", "revolute", ""),
+            ("right", "revolute", "<mimic joint='finger_joint'/>"),
         )
     )
     look = "<visual><geometry><mesh filename='package:///a.obj'/></geometry></visual>"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from drake_screw.screws.turns import (
+from drake_screw.screws.endless import (
     brought_near,
     drawn_range,
     is_endless,
