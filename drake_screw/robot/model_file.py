@@ -102,7 +102,7 @@ def model_file(
     if not is_xacro and not meshes.changed and not changed:
         return ModelFile(file, file, file_hash(file))
     for shape in meshes.left_out:
-        _log.info("%s: %s shape left out: %s", file, shape.role, shape)
+        _log.debug("%s: %s shape left out: %s", file, shape.role, shape)
     make_absolute(root, file.parent, place.packages)
     suffix = KINDS.get(root.tag, file.suffix.lower())
     hash = file_hash(file) if not is_xacro else hashlib.sha256(original.encode()).hexdigest()

@@ -10,9 +10,11 @@ import pytest
 from pydrake.geometry import Convex
 
 from drake_screw.errors import ModelError
-from drake_screw.robot import RobotConfig, Workcell, build_workcell
+from drake_screw.files import file_hash
+from drake_screw.robot import MeshShape, PlacedShape, RobotConfig, Workcell, build_workcell
 from drake_screw.robot.mesh_files import MOST_FACES, hull_file, look_file
 from drake_screw.robot.model_file import ModelFile, model_file
+from drake_screw.robot.model_meshes import LARGE
 from drake_screw.robot.packages import ModelPlace
 from drake_screw.typing import Array
 from tests.robot.small_arms import PLANAR, sdf
@@ -144,6 +146,31 @@ def test_a_robot_with_such_meshes_is_planned_with_their_hulls(tmp_path: Path) ->
     before = read(robot).hash
     (tmp_path / "small.stl").write_text(stl(2.0 * CORNERS))
     assert read(robot).hash != before
+
+
+def test_obstacles_and_tools_may_be_such_meshes(tmp_path: Path) -> None:
+    pytest.importorskip("trimesh")
+    (tmp_path / "small.stl").write_text(stl())
+    shape = PlacedShape(MeshShape(tmp_path / "small.stl", 2.0))
+    assert shape.corners().max(axis=0) == pytest.approx([0.2, 0.4, 0.6])
+    (tmp_path / "small.stl").write_text(stl(CORNERS * [1.0, 1.0, 0.0]))
+    with pytest.raises(ModelError, match="this mesh is flat"):
+        shape.corners()
+
+
+def test_a_large_obj_file_is_coarsened_to_be_looked_at(tmp_path: Path) -> None:
+    """Pages hold all meshes; as a collision shape it stays as it is."""
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere(subdivisions=6, radius=0.05)
+    (tmp_path / "ball.obj").write_text(trimesh.exchange.obj.export_obj(ball, digits=8))
+    assert (tmp_path / "ball.obj").stat().st_size > LARGE
+    model = read(arm(tmp_path, "ball.obj", look="ball.obj"))
+    text = model.read.read_text()
+    assert f"<uri>{tmp_path / 'ball.obj'}</uri>" in text
+    (look,) = (tmp_path / "cache").glob("drake_screw/meshes/*.obj")
+    assert f"<uri>{look}</uri>" in text
+    assert look.stat().st_size < LARGE / 2
+    assert model.hash == file_hash(model.file)
 
 
 def test_a_model_that_drake_reads_stays_as_it_is(tmp_path: Path) -> None:
