@@ -7,6 +7,7 @@ import logging
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from drake_screw.errors import ModelError
@@ -128,13 +129,21 @@ def _mend(root: ET.Element, place: ModelPlace, *, shapes: bool) -> bool:
         elif mimic is not None and joints.get(mimic.get("joint")) in (None, "fixed"):
             joint.remove(mimic)
             changed = True
-            _log.warning(
-                "%s: joint '%s' is to follow '%s', which does not move; it is held instead",
-                place.file,
-                joint.get("name"),
-                mimic.get("joint"),
+            _tell(
+                f"{place.file}: joint '{joint.get('name')}' is to follow '{mimic.get('joint')}', "
+                "which does not move; it is a joint of its own now"
             )
+    for transmission in root.findall("transmission"):
+        if any(joint.get("name") not in joints for joint in transmission.iterfind("joint")):
+            root.remove(transmission)
+            changed = True
     return changed
+
+
+@lru_cache
+def _tell(warning: str) -> None:
+    """Once, however often the model is read."""
+    _log.warning(warning)
 
 
 def _has_file(place: ModelPlace) -> Callable[[str], bool]:

@@ -258,16 +258,18 @@ def test_materials_of_one_name_are_told_apart(tmp_path: Path) -> None:
 def test_oddities_of_published_models_are_no_matter(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """No name, fixed joints that follow others, joints that follow fixed ones, no package."""
+    """No name, fixed joints that follow, joints that follow fixed ones, motors of none."""
     limits = "<axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='1'/>"
     joints = "".join(
         f"<link name='{name}'/><joint name='{name}_joint' type='{kind}'><parent link='base'/>"
         f"<child link='{name}'/>{limits}{mimic}</joint>"
-        for name, kind, mimic in (
-            ("hand", "revolute", ""),
-            ("fixed", "fixed", "<mimic joint='hand_joint'/>"),
-            ("left", "revolute", "<mimic joint='fixed_joint'/>"),
-            ("right", "revolute", "<mimic joint='hand_joint'/>"),
+        f"<transmission name='{name}'><type>transmission_interface/SimpleTransmission</type>"
+        f"<joint name='{motor}'/><actuator name='{name}_motor'/></transmission>"
+        for name, kind, mimic, motor in (
+            ("hand", "revolute", "", "hand_joint"),
+            ("fixed", "fixed", "<mimic joint='hand_joint'/>", "gone_joint"),
+            ("left", "revolute", "<mimic joint='fixed_joint'/>", "gone_joint"),
+            ("right", "revolute", "<mimic joint='hand_joint'/>", "gone_joint"),
         )
     )
     look = "<visual><geometry><mesh filename='package:///a.obj'/></geometry></visual>"
@@ -276,4 +278,5 @@ def test_oddities_of_published_models_are_no_matter(
     cell = build_workcell(RobotConfig(str(file), ("hand_joint",), "hand", (0.0,)))
     assert [s.reason for s in cell.model.left_out] == ["is at an address that leads nowhere"]
     assert cell.model.read.read_text().count("<mimic") == 1
+    assert cell.model.read.read_text().count("<transmission") == 1
     assert "'left_joint' is to follow 'fixed_joint', which does not move" in caplog.text
