@@ -11,6 +11,7 @@ import numpy as np
 
 from drake_screw.acquisition import UsableLessons, random_suggestion
 from drake_screw.assembly.freedoms import Freedom, freedoms
+from drake_screw.assembly.hints import hints
 from drake_screw.assembly.kept import kept, named_recordings, teacher_recordings
 from drake_screw.assembly.preview_parts import (
     PreviewedArm,
@@ -79,6 +80,7 @@ class Preview:
         ignored_collisions: pairs of links that may touch.
         touching_at_start: pairs of bodies that touch where every plan starts; only where planning
             does not look at that.
+        hints: what is likely to go wrong, a sentence each.
     """
 
     scenario: str
@@ -117,6 +119,7 @@ class Preview:
     no_demonstration: str | None
     ignored_collisions: tuple[tuple[str, str], ...]
     touching_at_start: tuple[tuple[str, str], ...]
+    hints: tuple[str, ...]
 
     def __str__(self) -> str:
         return "\n".join(f"{name:<10} {text}" for name, text in self._lines())
@@ -167,7 +170,7 @@ class Preview:
                 f"{both} at the start; collisions are left out here, but execute and export look "
                 "at them, and will find no plan",
             )
-        yield from (("note", line) for line in self.assumed)
+        yield from (("note", line) for line in (*self.assumed, *self.hints))
         if self.unseen:
             yield "note", "collision checks are incomplete; these shapes of the robot are missing:"
             yield from (("", f"  {line}") for line in self.unseen)
@@ -252,6 +255,7 @@ def preview(scenario: Scenario) -> Preview:
         no_demonstration=no_demonstration,
         ignored_collisions=scenario.robot.ignore_collisions,
         touching_at_start=touching_at_start(setup.workcell),
+        hints=hints(scenario, arm),
     )
 
 

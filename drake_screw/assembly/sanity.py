@@ -20,6 +20,10 @@ LISTED = 6
 """Of shapes that are missing; a robot can have many."""
 FAR = 1e3
 """m, where objects are that are to touch nothing."""
+ON_THE_LIMIT = 1e-6
+"""rad or m. So near to a limit is on it."""
+NUDGE = {"rad": 0.05, "m": 0.005}
+"""How far inside of a limit it is recommended to start."""
 PLACES = 25
 """Along each axis of the work area, that are looked at for obstacles."""
 STANDS_IN = 1e-3
@@ -52,12 +56,16 @@ def check_start(scenario: Scenario, arm: Arm) -> None:
     margin = chain.margin(start)
     if (margin <= 0.0).any():
         i = int(np.argmin(margin))
-        kept = scenario.planner.joint_margin
-        within = f", a planner.joint_margin of {kept:g} kept" if kept > 0.0 else ""
+        unit, name, on = arm.units[i], arm.joint_names[i], abs(margin[i]) <= ON_THE_LIMIT
+        key, kept = _margin_of(scenario, unit)
+        within = f", a {key} of {kept:g} {unit} kept" if kept > 0.0 else ""
+        inside = np.clip(start[i], *_a_little_inside(chain.lower[i], chain.upper[i], unit))
         raise ScenarioError(
-            f"robot.start: {arm.joint_names[i]} starts at {start[i]:.4f} rad, outside "
-            f"its limits {chain.lower[i]:.4f} .. {chain.upper[i]:.4f}{within}",
-            remedy="Start from a configuration that is strictly inside all joint limits.",
+            f"robot.start: {name} starts at {start[i]:.4f} {unit}, {'on' if on else 'outside'} "
+            f"its limits {chain.lower[i]:.4f} .. {chain.upper[i]:.4f} {unit}{within}",
+            remedy=f"A plan needs room on both sides: start it a little inside, at {inside:.4g} "
+            f"{unit} say. If {name} is to stay where it is, leave it out of robot.joints and put "
+            "it in robot.parked; there it may be on its limit.",
             file=scenario.source,
         )
 
@@ -68,17 +76,33 @@ def kept_within(scenario: Scenario, arm: Arm) -> ScrewChain:
     Raises:
         ScenarioError: no motion is left to a joint.
     """
-    chain, margin = arm.screw_chain(), scenario.planner.joint_margin
+    chain = arm.screw_chain()
+    margin = np.array([_margin_of(scenario, unit)[1] for unit in arm.units])
     lower, upper = chain.lower + margin, chain.upper - margin
     if (lower >= upper).any():
         i = int(np.argmin(upper - lower))
+        unit = arm.units[i]
         raise ScenarioError(
-            f"planner.joint_margin: {margin:g} to either side leave nothing of the range of "
-            f"{arm.joint_names[i]}, {arm.lower[i]:.4f} .. {arm.upper[i]:.4f}",
+            f"{_margin_of(scenario, unit)[0]}: {margin[i]:g} {unit} to either side leave nothing "
+            f"of the range of {arm.joint_names[i]}, {arm.lower[i]:.4f} .. {arm.upper[i]:.4f} "
+            f"{unit}",
             remedy="Choose a smaller margin.",
             file=scenario.source,
         )
-    return replace(chain, lower=lower, upper=upper) if margin > 0.0 else chain
+    return replace(chain, lower=lower, upper=upper) if margin.any() else chain
+
+
+def _margin_of(scenario: Scenario, unit: str) -> tuple[str, float]:
+    """The key of the margin that joints of a unit are to keep, and its value."""
+    block = scenario.planner
+    if unit == "m":
+        return "planner.slide_margin", block.slide_margin
+    return "planner.joint_margin", block.joint_margin
+
+
+def _a_little_inside(lower: float, upper: float, unit: str) -> tuple[float, float]:
+    room = min(NUDGE[unit], 0.1 * (upper - lower))
+    return lower + room, upper - room
 
 
 def touching_at_start(workcell: Workcell, clearance: float = 0.0) -> tuple[Pair, ...]:

@@ -25,8 +25,8 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
 
     The model must have the arm's joints, the base and the end effector. Other joints that are
     parked and that it lacks (those of a second arm, say) are left out, and so are links that it
-    lacks and that the tool may touch. The robot that recordings
-    were made on stays as it is.
+    lacks and that the tool may touch, and pairs with them in `ignore_collisions`. The robot that
+    recordings were made on stays as it is.
 
     Raises:
         ModelError: the model cannot be read or lacks the base, or it is one of the robot that the
@@ -51,13 +51,14 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
             file=model,
         )
     parked = {name: value for name, value in block.parked.items() if name in names}
-    robot = block.model_copy(update={"parked": parked})
+    links = _names(plant.get_body(i) for model in robot_models for i in plant.GetBodyIndices(model))
+    known = {"table", *links, *(o.name for o in scenario.objects)}
+    known |= {o.name for o in scenario.obstacles}
+    if block.tool is not None and block.tool.shape is not None:
+        known.add("tool")
+    ignored = tuple(pair for pair in block.ignore_collisions if known.issuperset(pair))
+    robot = block.model_copy(update={"parked": parked, "ignore_collisions": ignored})
     if block.tool is not None:
-        links = _names(
-            plant.get_body(i) for model in robot_models for i in plant.GetBodyIndices(model)
-        )
-        known = {"table", *links, *(o.name for o in scenario.objects)}
-        known |= {o.name for o in scenario.obstacles}
         touches = tuple(name for name in block.tool.touches if name in known)
         tool = block.tool.model_copy(update={"touches": touches})
         robot = robot.model_copy(update={"tool": tool})

@@ -9,6 +9,7 @@ import numpy as np
 
 from drake_screw.demonstrations.fidelity import Fidelity
 from drake_screw.demonstrations.look import Look, ScrewSegment, Stretch
+from drake_screw.robot.arm import comparable
 
 
 @dataclass(frozen=True)
@@ -180,7 +181,13 @@ class LookSummary:
     @property
     def tightest(self) -> JointSummary:
         """The joint that comes nearest to a limit."""
-        return min(self.joints, key=lambda joint: joint.margin)
+        margin, extent, slides = (
+            np.array(of)
+            for of in zip(
+                *((j.margin, j.upper - j.lower, j.unit == "m") for j in self.joints), strict=True
+            )
+        )
+        return self.joints[int(np.argmin(comparable(margin, extent, slides)))]
 
     def facts(self) -> Iterator[tuple[str, str]]:
         """Names and texts of what there is to say, but for fidelity and screws."""

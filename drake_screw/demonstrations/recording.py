@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -60,18 +60,20 @@ def checked(
     *,
     file: PathLike | None = None,
     lines: Array | None = None,
+    units: Sequence[str] | None = None,
 ) -> Recording:
     """The recording made fit for use, or an error that says where it is not.
 
-    Time is rebased to 0, samples with the stamp of the one before are dropped, angles within 1 mrad
-    beyond a limit are clamped, angles of joints without limits are counted on where they jump by
-    full turns, and of a still head and tail one sample is kept; `notes` says what was done.
+    Time is rebased to 0, samples with the stamp of the one before are dropped, joints within 1 mrad
+    (1 mm) beyond a limit are clamped, angles of joints without limits are counted on where they
+    jump by full turns, and of a still head and tail one sample is kept; `notes` says what was done.
 
     Args:
         recording: as read.
         lower, upper: (n,) joint limits, rad or m; infinite where a joint has none.
         file: named in errors.
         lines: (m,) the line of each sample in `file`.
+        units: "rad" or "m" of each joint; "rad" if None.
 
     Raises:
         RecordingError: fewer than two samples, a number that is not finite, time that runs
@@ -108,8 +110,9 @@ def checked(
     if not keep.all():
         notes.append(f"dropped {np.count_nonzero(~keep)} samples with a repeated time stamp")
         t, q, where = t[keep], q[keep], where[keep]
+    of = ["rad"] * q.shape[1] if units is None else list(units)
     q = _counted_on(recording, q, lower, upper, notes)
-    q = _within_limits(recording, q, lower, upper, notes, fail)
+    q = _within_limits(recording, q, lower, upper, of, notes, fail)
     gaps = np.flatnonzero((np.diff(t) > GAP) & (np.abs(np.diff(q, axis=0)).max(axis=1) > JUMP))
     if gaps.size:
         row = int(gaps[0])
@@ -123,7 +126,7 @@ def checked(
     last = len(t) - int(np.argmin(stays[::-1]))
     if not left.any() or stays.all() or first >= last:
         raise RecordingError(
-            f"the arm does not move: no joint by much more than {STILL * 1e3:.0f} mrad",
+            f"the arm does not move: no joint by much more than {STILL * 1e3:.0f} mrad (mm)",
             remedy="Record again while leading the arm.",
             file=file,
         )
@@ -154,6 +157,7 @@ def _within_limits(
     q: Array,
     lower: Array,
     upper: Array,
+    units: Sequence[str],
     notes: list[str],
     fail: Callable[[int, str, str], RecordingError],
 ) -> Array:
@@ -162,7 +166,7 @@ def _within_limits(
     if outside.any():
         row, column = (int(i) for i in np.unravel_index(int(np.argmax(outside)), q.shape))
         name, value = recording.joint_names[column], q[row, column]
-        if np.abs(q).max() > 2.0 * np.pi:
+        if np.abs(q[:, [unit == "rad" for unit in units]]).max(initial=0.0) > 2.0 * np.pi:
             raise fail(
                 row,
                 f"{name} is at {value:.4g}; angles beyond 2 pi look like degrees",
@@ -171,13 +175,15 @@ def _within_limits(
         raise fail(
             row,
             f"{name} is at {value:.4f}, outside its limits {lower[column]:.4f} .. "
-            f"{upper[column]:.4f}",
+            f"{upper[column]:.4f} {units[column]}",
             "Check that the recording and the model are of the same robot, or record again.",
         )
     if (beyond > 0.0).any():
-        names = np.array(recording.joint_names)[(beyond > 0.0).any(axis=0)]
-        notes.append(
-            f"clamped {', '.join(names)} to the limit (beyond it by {beyond.max() * 1e3:.2f} mrad)"
-        )
+        for unit, small in (("rad", "mrad"), ("m", "mm")):
+            most = beyond.max(axis=0) * [one == unit for one in units]
+            names = [n for n, by in zip(recording.joint_names, most, strict=True) if by > 0.0]
+            if names:
+                by = f"{most.max() * 1e3:.2f} {small}"
+                notes.append(f"clamped {', '.join(names)} to the limit (beyond it by {by})")
         return np.clip(q, lower, upper)
     return q

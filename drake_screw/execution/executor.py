@@ -101,6 +101,7 @@ class ScrewPlanExecutor(LeafSystem):
         self.control = control or Control()
         self.tolerances = tolerances or Tolerances()
         self._parameters = _parameters(arm, self.control)
+        self._lags, self._units = self.tolerances.lags(arm), arm.units
         self._plan = self.DeclareAbstractInputPort("plan", Value[object]())
         self._measured = self.DeclareVectorInputPort("measured_state", 2 * arm.n)
         rest = _Memory(None, 0.0, 0.0, arm.middle, np.zeros(arm.n), ExecutionStatus())
@@ -166,11 +167,12 @@ class ScrewPlanExecutor(LeafSystem):
             status=ExecutionStatus(Phase.RUNNING, now.segment),
             progress=min(t / plan.duration, 1.0),
         )
-        lag, joint = worst_lag(arm, q, measured)
+        late, joint, lag = worst_lag(self._lags, q, measured)
         since = memory.lagging_since if memory.lagging_since is not None else memory.updated
-        memory = replace(memory, lagging_since=since if lag > allowed.lag else None)
-        if memory.updated - since > allowed.patience and lag > allowed.lag:
-            reason = f"the arm is blocked: {joint} stays {lag:.3f} rad behind"
+        memory = replace(memory, lagging_since=since if late else None)
+        if memory.updated - since > allowed.patience and late:
+            how_far = f"{arm.joint_names[joint]} stays {lag:.3f} {self._units[joint]} behind"
+            reason = f"the arm is blocked: {how_far}"
             return replace(memory, q=measured, status=failed(now.segment, reason))
         X_WE, J_WE = arm.pose_and_jacobian(q)
         X_WS = plan.segments[now.segment].pose(now.s)

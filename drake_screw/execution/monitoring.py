@@ -18,12 +18,13 @@ class Tolerances:
     """What an execution may deviate.
 
     Attributes:
-        start: rad, of every joint from the plan's first configuration.
+        start: rad, of every revolute joint from the plan's first configuration.
         position, rotation: m and rad, of the commanded end effector from its set point.
-        lag: rad, of a measured joint from its desired position.
+        lag: rad, of a measured revolute joint from its desired position.
         patience: s, that such a lag may last.
         final_position, final_rotation: m and rad, of the measured end effector at the end.
         settling: s, that it may take to get there after the plan's time.
+        slide_start, slide_lag: m, of prismatic joints, as `start` and `lag`.
     """
 
     start: float = 0.02
@@ -34,6 +35,16 @@ class Tolerances:
     final_position: float = 1e-3
     final_rotation: float = 5e-3
     settling: float = 1.0
+    slide_start: float = 5e-3
+    slide_lag: float = 10e-3
+
+    def starts(self, arm: Arm) -> Array:
+        """(n,) rad or m, of an arm's joints from a plan's first configuration."""
+        return np.where(arm.slides, self.slide_start, self.start)
+
+    def lags(self, arm: Arm) -> Array:
+        """(n,) rad or m, of an arm's joints from their desired positions."""
+        return np.where(arm.slides, self.slide_lag, self.lag)
 
 
 def failed(segment: int | None, reason: str) -> ExecutionStatus:
@@ -52,11 +63,11 @@ def beginning(
     for i, piece in enumerate(plan.segments):
         margin = arm.margin(piece.q)
         if not (margin >= 0.0).all():
-            joint = int(np.argmin(margin.min(axis=0)))
+            joint = arm.tightest(piece.q)
             return failed(
                 i,
                 f"the plan leaves the limits of {arm.joint_names[joint]} by "
-                f"{-margin[:, joint].min():.4f} rad",
+                f"{-margin[:, joint].min():.4f} {arm.units[joint]}",
             )
         ratio = np.abs(piece.v) / arm.velocity_limits
         if (ratio > 1.0).any():
@@ -67,21 +78,30 @@ def beginning(
                 "its velocity limit",
             )
     away = np.abs(q - plan.segments[0].q[0])
-    joint = int(np.argmax(away))
-    if away[joint] > tolerances.start:
+    allowed = tolerances.starts(arm)
+    joint = int(np.argmax(away / allowed))
+    if away[joint] > allowed[joint]:
         return failed(
             0,
             f"the arm is not where the plan starts: {arm.joint_names[joint]} is "
-            f"{away[joint]:.3f} rad away",
+            f"{away[joint]:.3f} {arm.units[joint]} away",
         )
     return ExecutionStatus(Phase.RUNNING, 0)
 
 
-def worst_lag(arm: Arm, q: Array, measured: Array) -> tuple[float, str]:
-    """How far, in rad, the farthest joint is from its desired position q (n,), and its name."""
+def worst_lag(lags: Array, q: Array, measured: Array) -> tuple[bool, int, float]:
+    """The joint that is farthest from its desired position q (n,), by what is allowed it.
+
+    Args:
+        lags: (n,) rad or m, what is allowed each.
+        q, measured: (n,) rad or m.
+
+    Returns:
+        Whether that is more than allowed, which joint it is, and how far it is.
+    """
     lag = np.abs(measured - q)
-    joint = int(np.argmax(lag))
-    return float(lag[joint]), arm.joint_names[joint]
+    joint = int(np.argmax(lag / lags))
+    return bool(lag[joint] > lags[joint]), joint, float(lag[joint])
 
 
 def apart(X_WA: Array, X_WB: Array) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.planning.contract import CHARACTERISTIC_LENGTH
 from drake_screw.robot import Arm
+from drake_screw.robot.arm import comparable
 from drake_screw.screws import (
     exp,
     inverse,
@@ -22,6 +23,7 @@ from drake_screw.screws import (
 from drake_screw.typing import Array
 
 EVERY = 4e-3  # s, between samples at which the end effector is looked at
+YIELDS = 1e-4  # rad or m, by which a joint that rests against its stop is beyond it: stops give way
 
 
 @dataclass(frozen=True)
@@ -55,9 +57,11 @@ class ExecutionReport:
     Attributes:
         status: at the end.
         planned, time: s, length of the plan and of its execution.
-        worst_margin: rad, the least distance to a joint limit; negative outside.
+        worst_margin: the least distance to a joint limit, in worst_unit; negative outside.
         worst_joint: the joint that had it.
-        outside: names of the joints that were outside their limits.
+        worst_unit: "rad" or "m".
+        worst_compared: rad, the same for comparing joints, as `Arm.tightest` does.
+        outside: names of the joints that were outside their limits, by more than stops give way.
         velocity: greatest joint velocity, over its limit.
         tracking: of the measured end effector from the set point of the same time.
         screws: of the measured end effector from the commanded screw whatever the time, for each
@@ -71,6 +75,8 @@ class ExecutionReport:
     time: float
     worst_margin: float
     worst_joint: str
+    worst_unit: str
+    worst_compared: float
     outside: tuple[str, ...]
     velocity: float
     tracking: Deviation
@@ -109,10 +115,10 @@ def make_report(
         contacts: that were seen.
     """
     margin = arm.margin(q)
-    joint = int(np.argmin(margin.min(axis=0)))
-    outside = tuple(
-        name for name, least in zip(arm.joint_names, margin.min(axis=0), strict=True) if least < 0
-    )
+    least = margin.min(axis=0)
+    compared = comparable(least, arm.upper - arm.lower, arm.slides)
+    joint = int(np.argmin(compared))
+    outside = tuple(n for n, kept in zip(arm.joint_names, least, strict=True) if kept < -YIELDS)
     tracking, screws, final = Deviation(), [], Deviation()
     if plan.segments:
         times = np.unique(np.round(t / EVERY).astype(int), return_index=True)[1]
@@ -139,8 +145,10 @@ def make_report(
         status=status,
         planned=plan.duration,
         time=float(t[-1]),
-        worst_margin=float(margin.min()),
+        worst_margin=float(least[joint]),
         worst_joint=arm.joint_names[joint],
+        worst_unit=arm.units[joint],
+        worst_compared=float(compared[joint]),
         outside=outside,
         velocity=float((np.abs(v) / arm.velocity_limits).max()),
         tracking=tracking,

@@ -30,13 +30,15 @@ class TimeLimits:
 
     Attributes:
         speed: part of each joint's velocity limit that is used, 0 to 1.
-        acceleration: rad/s^2 (m/s^2), of every joint.
+        acceleration: rad/s^2, of every revolute joint.
         smoothing: s, over which the acceleration changes.
+        slide_acceleration: m/s^2, of every prismatic one.
     """
 
     speed: float = 0.5
     acceleration: float = 2.0
     smoothing: float = 0.1
+    slide_acceleration: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +199,7 @@ def _timed(
         still = np.zeros((2, arm.n))
         return TimedSegment(X_WA, X_WB, limits.smoothing, ends, 0.0 * ends, q[[0, -1]], still)
     velocity = limits.speed * arm.velocity_limits
-    acceleration = np.full(arm.n, limits.acceleration)
+    acceleration = np.where(arm.slides, limits.slide_acceleration, limits.acceleration)
     law = smooth_law(spline(s, q), velocity, acceleration, limits.smoothing)
     return TimedSegment(X_WA, X_WB, law.period, law.s, law.rate, law.q, law.v)
 

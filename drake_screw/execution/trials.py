@@ -79,7 +79,8 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
 _MEASURES: dict[str, Callable[[ExecutionReport], str]] = {
     "planned_s": lambda r: f"{r.planned:.3f}",
     "time_s": lambda r: f"{r.time:.3f}",
-    "worst_margin_rad": lambda r: f"{r.worst_margin:.5f}",
+    "worst_margin_rad": lambda r: f"{r.worst_margin:.5f}" if r.worst_unit == "rad" else "",
+    "worst_margin_m": lambda r: f"{r.worst_margin:.5f}" if r.worst_unit == "m" else "",
     "worst_joint": lambda r: r.worst_joint,
     "outside_limits": lambda r: ";".join(r.outside),
     "velocity_over_limit": lambda r: f"{r.velocity:.4f}",
@@ -113,13 +114,16 @@ class Measures:
     """The worst of some executions.
 
     Attributes:
-        joint_margin: rad, the least; negative outside the limits.
+        joint_margin: the least, in `unit`; negative outside the limits.
+        joint, unit: which joint had it, and "rad" or "m".
         velocity: greatest joint velocity, over its limit.
         tracking, screws, final: greatest of each kind, see `ExecutionReport`.
         time: s, least, greatest and mean.
     """
 
     joint_margin: float
+    joint: str
+    unit: str
     velocity: float
     tracking: Deviation
     screws: Deviation
@@ -163,7 +167,7 @@ class TrialSummary:
                 f"outside joint limits       {self.outside_limits}",
                 f"over a velocity limit      {self.over_velocity}",
                 f"with contact               {self.with_contact}",
-                f"least joint margin         {self.worst.joint_margin:.4f} rad",
+                f"least joint margin         {self.worst.joint_margin:.4f} {self.worst.unit}",
                 f"greatest joint velocity    {self.worst.velocity:.0%} of its limit",
                 f"tracking error (set point) {_at_most(self.worst.tracking)}",
                 f"path error (screw)         {_at_most(self.worst.screws)}",
@@ -213,8 +217,11 @@ def _flaws(report: ExecutionReport) -> str:
 
 def _measures(reports: Sequence[ExecutionReport]) -> Measures:
     times = [report.time for report in reports]
+    tightest = min(reports, key=lambda report: report.worst_compared)
     return Measures(
-        joint_margin=min(report.worst_margin for report in reports),
+        joint_margin=tightest.worst_margin,
+        joint=tightest.worst_joint,
+        unit=tightest.worst_unit,
         velocity=max(report.velocity for report in reports),
         tracking=_greatest([report.tracking for report in reports]),
         screws=_greatest([screw for report in reports for screw in report.screws]),

@@ -179,6 +179,19 @@ class Arm:
         q = np.asarray(q, dtype=float)
         return np.minimum(q - self.lower, self.upper - q)
 
+    @property
+    def slides(self) -> Array:
+        """(n,) whether each joint is prismatic."""
+        return np.array([unit == "m" for unit in self.units])
+
+    def tightest(self, q: ArrayLike) -> int:
+        """The joint that comes nearest to a limit at any of the configurations (..., n).
+
+        Prismatic joints compare by the part of their range, which counts as half a turn.
+        """
+        least = self.margin(q).reshape(-1, self.n).min(axis=0)
+        return int(np.argmin(comparable(least, self.upper - self.lower, self.slides)))
+
     def screw_chain(self) -> ScrewChain:
         """The arm as a product of exponentials, read off the plant at q = 0."""
         X_WE, J_WE = self.pose_and_jacobian(np.zeros(self.n))
@@ -197,6 +210,18 @@ class Arm:
             self._context, JacobianWrtVariable.kQDot, self._E, np.zeros(3), self._W, self._W
         )
         return J[:, self._columns]
+
+
+def comparable(margin: Array, extent: Array, slides: Array) -> Array:
+    """Distances from limits (..., n) in rad, for comparing: of slides, in parts of their range.
+
+    Args:
+        margin: rad, or m of slides.
+        extent: (n,) of the joints' ranges, which may be infinite.
+        slides: (n,) which joints are prismatic; their whole range counts as half a turn.
+    """
+    weight = np.where(slides & np.isfinite(extent), np.pi / extent, 1.0)
+    return np.asarray(margin * weight)
 
 
 def _with(q: Array, index: int, value: float) -> Array:

@@ -28,7 +28,8 @@ class Certificate:
         beta, epsilon, delta: what was to be certified, see `drake_screw.bandits.Goal`.
         collisions_checked: whether touching something counts as failing.
         clearance: m, that the robot keeps from all else and itself, where that is checked.
-        joint_margin: rad (or m), that joints keep from their limits.
+        joint_margin: rad, that revolute joints keep from their limits.
+        slide_margin: m, that prismatic ones keep.
         incomplete_shapes: links of the robot that lack collision shapes of its model; what touches
             there is not seen.
         strategy: name of the bandit.
@@ -74,6 +75,7 @@ class Certificate:
     delta_of_attempt: float | None = None
     clearance: float = 0.0
     joint_margin: float = 0.0
+    slide_margin: float = 0.0
     ignored_collisions: tuple[tuple[str, str], ...] = ()
     incomplete_shapes: tuple[str, ...] = ()
     freedoms: tuple[Freedom, ...] = ()
@@ -124,8 +126,10 @@ class Certificate:
         else:
             collisions = " that touches nothing"
         within = "within"
-        if self.joint_margin > 0.0:
-            within = f"at least {self.joint_margin:g} rad (m, where they slide) within"
+        if self.joint_margin > 0.0 or self.slide_margin > 0.0:
+            kept = [f"{self.joint_margin:g} rad"] if self.joint_margin > 0.0 else []
+            kept += [f"{self.slide_margin:g} m, where joints slide,"] * (self.slide_margin > 0.0)
+            within = f"at least {' and '.join(kept)} within"
         return (
             f"This is of {self.regions} regions, with {self.demonstrations} "
             f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
@@ -230,6 +234,7 @@ def certificate(
         collisions_checked=setup.scenario.planner.collision,
         clearance=setup.scenario.planner.clearance,
         joint_margin=setup.scenario.planner.joint_margin,
+        slide_margin=setup.scenario.planner.slide_margin,
         ignored_collisions=setup.scenario.robot.ignore_collisions,
         incomplete_shapes=setup.workcell.model.incomplete,
         strategy=bandit.name,

@@ -70,6 +70,11 @@ def load_stored_scenario(file: PathLike) -> Scenario:
         found = tree.entries.get(block)
         if isinstance(found, Entries) and key not in found.entries:
             overrides.append(f"{block}.{key}={meaning}")
+    planner = tree.entries.get("planner")
+    if isinstance(planner, Entries) and "slide_margin" not in planner.entries:
+        margin = planner.entries.get("joint_margin")
+        if isinstance(margin, Scalar):  # of prismatic joints, too, in m
+            overrides.append(f"planner.slide_margin={margin.value}")
     return _scenario(tree, overrides, path)
 
 

@@ -193,7 +193,9 @@ class PlannerBlock(Block):
     clearance: Annotated[Annotated[float, Field(ge=0.0, le=1.0)], METRES] = 0.0
     """distance that all those have to keep, where `collision` is looked at"""
     joint_margin: Annotated[Annotated[float, Field(ge=0.0, lt=3.0)], RADIANS] = 0.0
-    """distance that the joints have to keep from their limits (of prismatic ones in m)"""
+    """distance that revolute joints have to keep from their limits"""
+    slide_margin: Annotated[Annotated[float, Field(ge=0.0, lt=3.0)], METRES] = 0.0
+    """distance that prismatic joints have to keep from their limits"""
 
     def broken_rules(self) -> Iterator[Problem]:
         if self.clearance > 0.0 and not self.collision:

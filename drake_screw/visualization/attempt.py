@@ -112,7 +112,7 @@ class Attempt:
     @property
     def tightest(self) -> tuple[int, float]:
         """The joint that comes nearest to a limit anywhere along the plan, and how near."""
-        joint = int(self.margin.min(axis=0).argmin())
+        joint = self.arm.tightest(self.plan.q)
         return joint, float(self.margin[:, joint].min())
 
     def axis_distance(self, segment: int) -> float:

@@ -215,7 +215,7 @@ class TeachingSession:
             self._X_WO,
         )
         try:
-            self._offer(checked(recording, arm.lower, arm.upper))
+            self._offer(checked(recording, arm.lower, arm.upper, units=arm.units))
         except DrakeScrewError as error:
             self._message = str(error)
 

@@ -237,7 +237,7 @@ def test_an_unknown_motion_is_refused(workcell: Workcell) -> None:
 def test_leading_follows_the_screws_with_the_least_motion(workcell: Workcell) -> None:
     chain, start = workcell.arm.screw_chain(), workcell.start
     goal = chain.pose(start + np.array([0.2, 0.1, -0.1, 0.2, 0.1, 0.2, -0.3]))
-    paths = follow_key_poses(chain, start, np.stack([goal, goal])[None])
+    paths = follow_key_poses(chain, start, np.stack([goal, goal])[None], (-np.inf, np.inf))
     first = paths.segment == 0
     hand = chain.pose(paths.q[0, first])
     wanted = sclerp(hand[0], goal, np.linspace(0.0, 1.0, len(hand)))

@@ -113,11 +113,11 @@ def test_a_start_within_the_joint_margin_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError) as caught:
         _ = Setup(kept_in(tmp_path, "planner.joint_margin=1.65")).workcell
     assert "robot.start: p1 starts at -0.9000 rad" in caught.value.message
-    assert "a planner.joint_margin of 1.65 kept" in caught.value.message
+    assert "a planner.joint_margin of 1.65 rad kept" in caught.value.message
 
 
 def test_a_joint_margin_that_leaves_nothing_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError) as caught:
         _ = Setup(kept_in(tmp_path, "planner.joint_margin=2.6")).workcell
-    assert "2.6 to either side leave nothing of the range of p1" in caught.value.message
+    assert "2.6 rad to either side leave nothing of the range of p1" in caught.value.message
     assert caught.value.remedy == "Choose a smaller margin."

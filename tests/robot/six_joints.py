@@ -27,6 +27,7 @@ def urdf(
     limits: Mapping[str, str] | None = None,
     shapes: Mapping[str, str] | None = None,
     inertia: bool | Sequence[str] = True,
+    lift: tuple[float, float] | None = None,
     extra: str = "",
 ) -> str:
     """The model; its frame "hand" is a link.
@@ -37,10 +38,16 @@ def urdf(
         limits: attributes of <limit> beside the positions' for some joints; LIMIT for the others.
         shapes: collision geometries of some links, as URDF text.
         inertia: whether links have one, or which.
+        lift: the range in m of a joint "lift" below the others, if there is to be one.
         extra: more of the model.
     """
     parts = ["<robot name='six'>"]
-    for link in _LINKS:
+    joints, links = dict(_JOINTS), list(_LINKS)
+    if lift is not None:
+        joints["lift"] = ("base", "column", "0 0 0", "0 0 1", "prismatic", lift)
+        joints["j1"] = ("column", *joints["j1"][1:])
+        links.append("column")
+    for link in links:
         inertial = ""
         if inertia is True or (inertia and link in inertia):
             inertial = (
@@ -50,8 +57,8 @@ def urdf(
         shape = (shapes or {}).get(link, "")
         hull = shape and f"<collision name='{link}_hull'>{shape}</collision>"
         parts.append(f"<link name='{link}'>{inertial}{hull}</link>")
-    for name in order or _JOINTS:
-        parent, child, xyz, axis, kind, (lower, upper) = _JOINTS[name]
+    for name in order or joints:
+        parent, child, xyz, axis, kind, (lower, upper) = joints[name]
         limit = f"<limit lower='{lower}' upper='{upper}' {(limits or {}).get(name, LIMIT)}/>"
         parts.append(
             f"<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>"
@@ -88,21 +95,26 @@ def fingers(gap: float = 0.0, *, half: float = 0.0123) -> str:
     return "".join(parts)
 
 
-def scenario(model: str = "six.urdf", *, robot: str = "", more: str = "") -> str:
+def scenario(
+    model: str = "six.urdf", *, robot: str = "", more: str = "", lift: float | None = None
+) -> str:
     """A scenario of pouring with the arm, as YAML text.
 
     Args:
         model: file of the model.
         robot: more lines of the block `robot`, indented by two.
         more: further blocks.
+        lift: m, where the joint "lift" starts, if it belongs to the arm.
     """
+    names = NAMES if lift is None else ("lift", *NAMES)
+    start = START if lift is None else (lift, *START)
     return f"""
 name: six
 robot:
   model: {model}
-  joints: [{", ".join(NAMES)}]
+  joints: [{", ".join(names)}]
   end_effector: hand
-  start: [{", ".join(map(str, START))}]
+  start: [{", ".join(map(str, start))}]
 {robot}
 table: {{center: [0.35, 0.0], size: [1.1, 1.3], top: 0.0}}
 objects:

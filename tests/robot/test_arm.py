@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,16 @@ from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
 
 from drake_screw.errors import ModelError
-from drake_screw.robot import Arm
+from drake_screw.robot import (
+    Arm,
+    BoxShape,
+    ObjectConfig,
+    ObstacleConfig,
+    PlacedShape,
+    RobotConfig,
+    TableConfig,
+    build_workcell,
+)
 from drake_screw.screws import exp, inverse, log
 from tests.robot.small_arms import PLANAR, SEVEN, SLIDING, JointText, arm_of, plant_of, sdf
 
@@ -204,3 +214,20 @@ def test_joints_without_limits_are_left_out_of_margins() -> None:
 def test_a_prismatic_joint_needs_limits() -> None:
     with pytest.raises(ModelError, match="joint 'rail' has no position limits"):
         arm_of((replace(SLIDING[0], limits=None), *SLIDING[1:]))
+
+
+def test_only_names_that_the_model_gives_are_listed(tmp_path: Path) -> None:
+    """Neither what stands around nor the frames that Drake makes for joints and welds."""
+    file = tmp_path / "sliding.sdf"
+    file.write_text(sdf(SLIDING))
+    joints = tuple(joint.name for joint in SLIDING)
+    robot = RobotConfig(str(file), joints, "hnd", (0.1,) * 5)
+    block = ObstacleConfig("block", PlacedShape(BoxShape((0.1, 0.1, 0.1)), (3.0, 0.0, 0.0)))
+    around = {"objects": [ObjectConfig("bowl", 0.1, 0.1)], "obstacles": [block]}
+    with pytest.raises(ModelError) as caught:
+        build_workcell(robot, table=TableConfig((0.0, 0.0), (1.0, 1.0), -1.0), **around)
+    links = ", ".join(["base", *(joint.link for joint in SLIDING), "hand"])
+    assert caught.value.remedy == f"Did you mean 'hand'? Frames: {links}"
+    with pytest.raises(ModelError) as caught:
+        build_workcell(replace(robot, end_effector="hand", joints=("rails", *joints[1:])), **around)
+    assert caught.value.remedy == f"Did you mean 'rail'? Joints: {', '.join(joints)}"

@@ -23,7 +23,7 @@ def scenario_of(collision=False, objects=(), tool=None, approach="screw", ignore
     return SimpleNamespace(
         coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
         planner=SimpleNamespace(
-            **{"clearance": 0.0, "joint_margin": 0.0} | kept,
+            **{"clearance": 0.0, "joint_margin": 0.0, "slide_margin": 0.0} | kept,
             collision=collision,
             approach=approach,
             turns=24,
@@ -91,10 +91,14 @@ def test_what_is_kept_is_said() -> None:
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
     assert (stated.clearance, stated.joint_margin) == (0.02, 0.1)
     assert (
-        "a plan at least 0.1 rad (m, where they slide) within the joint limits of the robot's "
-        "model along which the robot keeps 0.02 m from all else and itself." in text
+        "a plan at least 0.1 rad within the joint limits of the robot's model along which the "
+        "robot keeps 0.02 m from all else and itself." in text in text
     )
     assert "touches nothing" not in text
+    sliding = scenario_of(joint_margin=0.1, slide_margin=0.01)
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=sliding)
+    assert stated.slide_margin == 0.01
+    assert "at least 0.1 rad and 0.01 m, where joints slide, within the joint limits" in text
 
 
 def test_what_may_touch_is_said() -> None:

@@ -39,16 +39,20 @@ class CandidatePaths:
     arrived: NDArray[np.bool_]
 
 
-def follow_key_poses(chain: ScrewChain, q_start: Array, X_WK: Array) -> CandidatePaths:
+def follow_key_poses(
+    chain: ScrewChain, q_start: Array, X_WK: Array, stops: tuple[Array, Array]
+) -> CandidatePaths:
     """Lead the arm from one key pose to the next along constant screws.
 
     Args:
         chain: the arm.
         q_start: (n,) rad or m.
         X_WK: (c, g, 4, 4) key poses of the end effector.
+        stops: (n,) and (n,) where joints stop while the others move on; infinite of joints whose
+            limits are not looked at.
 
     Returns:
-        The joint paths; limits are not looked at. They end early if no candidate is left.
+        The joint paths. They end early if no candidate is left.
     """
     count = len(X_WK)
     q = np.tile(np.asarray(q_start, dtype=float), (count, 1))
@@ -60,7 +64,7 @@ def follow_key_poses(chain: ScrewChain, q_start: Array, X_WK: Array) -> Candidat
         steps = max(4, int(np.ceil(size.max() / STEP)))
         for i in range(1, steps + 1):
             target = sclerp(X_WA, X_WB, np.full(count, i / steps))
-            motion = damped_joint_motion(chain.jacobian(q), log(target @ inverse(X_WE)))
+            motion = _motion(chain.jacobian(q), log(target @ inverse(X_WE)), q, stops)
             near_singular = np.linalg.norm(motion, axis=-1) > MAX_JOINT_STEP
             arrived &= ~near_singular
             q = q + np.where(near_singular[:, None], 0.0, motion)
@@ -72,6 +76,21 @@ def follow_key_poses(chain: ScrewChain, q_start: Array, X_WK: Array) -> Candidat
         arrived &= translation_distance(X_WE, X_WB) < ARRIVAL_TOLERANCE[0]
         arrived &= rotation_angle(X_WE, X_WB) < ARRIVAL_TOLERANCE[1]
     return CandidatePaths(np.stack(points, axis=1), np.array(segments), arrived)
+
+
+def _motion(J: Array, V: Array, q: Array, stops: tuple[Array, Array]) -> Array:
+    """Joint motion (c, n) for twists V (c, 6) from q (c, n); who comes to a stop is left behind."""
+    motion, held = damped_joint_motion(J, V), np.zeros(q.shape, dtype=bool)
+    room = stops[0] - q, stops[1] - q
+    while True:
+        beyond = ~held & ((motion < room[0]) | (motion > room[1]))
+        if not beyond.any():
+            return motion
+        held |= beyond
+        fixed = np.where(held, np.clip(motion, *room), 0.0)
+        rest = V - (J @ fixed[..., None])[..., 0]
+        free = damped_joint_motion(np.where(held[:, None], 0.0, J), rest)
+        motion = np.where(held, fixed, free)
 
 
 def damped_joint_motion(J: Array, V: Array) -> Array:

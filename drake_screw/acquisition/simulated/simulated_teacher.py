@@ -20,6 +20,7 @@ from drake_screw.acquisition.simulated.motions import (
     tool_lengths,
     usual_azimuth,
 )
+from drake_screw.acquisition.simulated.stops import COMFORTABLE, MARGIN, ROUNDING, Stops
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.recording import checked
@@ -31,9 +32,6 @@ from drake_screw.typing import Array
 CANDIDATES = 64  # ways thought of at a time
 ATTEMPTS = 3
 COLLISION_STRIDE = 6  # one in so many points of a path is checked before it is performed
-MARGIN = 0.15  # rad, what people mean to keep from the joints' stops
-MARGIN_TOLERANCE = 0.05  # rad, by which they miss it
-COMFORTABLE_MARGIN = 0.6  # rad, beyond which more distance from the stops is no easier
 AZIMUTH_WEIGHT = 0.4  # rad of margin that people give up rather than come from a radian aside
 TRAVEL_WEIGHT = 0.03  # rad of margin that people give up to save a radian of joint motion
 
@@ -78,6 +76,7 @@ class SimulatedTeacher:
         self.motion = motion if isinstance(motion, str) else getattr(motion, "__name__", "motion")
         self._motion = MOTIONS[motion] if isinstance(motion, str) else motion
         self._chain = workcell.arm.screw_chain()
+        self._stops = Stops.of(workcell.arm, workcell.start)
 
     def demonstrate(
         self,
@@ -105,7 +104,7 @@ class SimulatedTeacher:
                     touched[hit] += 1
                     continue
                 q = self._perform(rehearsal, int(choice), rng)
-                if (self.workcell.arm.margin(q) < MARGIN - MARGIN_TOLERANCE).any():
+                if not self._stops.kept(q):
                     limited += 1
                 elif hit := self._touching(q, X_WO):
                     touched[hit] += 1
@@ -132,12 +131,12 @@ class SimulatedTeacher:
         keys = self._motion(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
         aside = azimuth_deviations(rng, CANDIDATES)
         X_WK = hand_poses(keys, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
-        paths = follow_key_poses(self._chain, self.workcell.start, X_WK)
-        margin = self.workcell.arm.margin(paths.q).min(axis=(1, 2))
-        within = margin >= MARGIN
+        paths = follow_key_poses(self._chain, self.workcell.start, X_WK, self._stops.ends)
+        margin = self._stops.margin(paths.q).min(axis=1)
+        within = margin >= MARGIN - ROUNDING
         travel = np.linalg.norm(np.diff(paths.q, axis=1), axis=-1).sum(axis=1)
         comfort = (
-            np.minimum(margin, COMFORTABLE_MARGIN)
+            np.minimum(margin, COMFORTABLE)
             - keys.held
             - AZIMUTH_WEIGHT * aside**2
             - TRAVEL_WEIGHT * travel
@@ -167,7 +166,7 @@ class SimulatedTeacher:
             X_WO,
             task_objects=(self.area.objects[0].name,) if len(self.area.objects) > 1 else (),
         )
-        return replace(checked(recording, arm.lower, arm.upper), notes=())
+        return replace(checked(recording, arm.lower, arm.upper, units=arm.units), notes=())
 
 
 def _most_often(touched: Counter[tuple[str, str]]) -> str:
