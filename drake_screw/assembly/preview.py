@@ -163,13 +163,6 @@ class Preview:
                 "shoulder; only an object held long reaches there",
             )
         yield from (("note", str(item)) for item in self.covered)
-        if self.unseen:
-            yield "note", "collision checks are incomplete; these shapes of the robot are missing:"
-            yield from (("", f"  {line}") for line in self.unseen)
-        if self.not_shown is not None:
-            yield "note", self.not_shown
-        if self.unknown_links:
-            yield "note", f"links that the robot's model lacks: {', '.join(self.unknown_links)}"
         if self.touching_at_start:
             both = " and ".join(f"'{a}' touches '{b}'" for a, b in self.touching_at_start)
             yield (
@@ -178,6 +171,13 @@ class Preview:
                 "at them, and will find no plan",
             )
         yield from (("note", line) for line in (*self.assumed, *self.hints))
+        if self.unseen:
+            yield "note", "collision checks are incomplete; these shapes of the robot are missing:"
+            yield from (("", f"  {line}") for line in self.unseen)
+        if self.not_shown is not None:
+            yield "note", self.not_shown
+        if self.unknown_links:
+            yield "note", f"links that the robot's model lacks: {', '.join(self.unknown_links)}"
         if self.lacks_ompl:
             yield "note", connection.ABSENT
         rate = self.plans_per_second

@@ -50,8 +50,8 @@ def assumed_motors(
         motor = driven.get(joint.index())
         return motor is not None and motor.effort_limit() < MOST_EFFORT
 
-    asked = [j for j in _single(plant, robot) if any(called(j, name) for name in names)]
-    unrated = [j.name() for j in asked if not rated(j)]
+    joints = {name: j for name in names for j in _single(plant, robot) if called(j, name)}
+    unrated = [name for name, joint in joints.items() if not rated(joint)]
     if not unrated:
         return ()
     return (

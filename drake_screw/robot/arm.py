@@ -22,9 +22,7 @@ from drake_screw.typing import Array
 class Arm:
     """Kinematics and limits of some revolute and prismatic joints of a finalized plant.
 
-    `owner` keeps alive what owns the plant: a plant does not keep its diagram. `joints` are the
-    plant's own, in the arm's order. A joint that turns may be without limits (`endless`, (n,)):
-    they are infinite then.
+    `owner` keeps alive what owns the plant: a plant does not keep its diagram.
 
     Args:
         plant: finalized; it stays the source of truth for everything here.
@@ -36,7 +34,9 @@ class Arm:
         velocity_limits: rad/s (m/s) of the arm's joints by name, in place of the plant's.
 
     Attributes:
-        lower, upper: (n,) rad or m, position limits; infinite where a joint has none.
+        joints: the plant's own, in the arm's order.
+        lower, upper: (n,) rad or m, position limits; infinite where there are none.
+        endless: (n,) bool, which joints are without: only those that turn may be.
         velocity_limits: (n,) rad/s or m/s, finite and above 0.
         assumed_velocities: names of the joints whose velocity limit is a default, for want of one.
 
@@ -91,7 +91,7 @@ class Arm:
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
         self.velocity_limits, self.assumed_velocities = resolved(
-            joints, self.joint_names, velocity_limits or {}
+            joints, velocity_limits or {}, self.joint_names
         )
         self.endless = is_endless(self.lower, self.upper) & (np.array(self.units) == "rad")
         limited = np.isfinite(self.lower) & np.isfinite(self.upper)

@@ -234,16 +234,26 @@ def _move(trees: Trees, X_WS: RigidTransform) -> None:
             )
         X_WC = X_WS @ between_links(joint)
         name, child = joint.name(), joint.child_body().body_frame()
-        plant.RemoveJoint(joint)
+        _remove(plant, joint)
         plant.AddJoint(WeldJoint(name, plant.world_frame(), child, X_WC))
 
 
 def _weld(plant: MultibodyPlant, joint: Joint, X_FM: RigidTransform) -> None:
     """Put a weld of the same name in the place of a joint and of its motors."""
+    name, F, M = joint.name(), joint.frame_on_parent(), joint.frame_on_child()
+    _remove(plant, joint)
+    plant.AddJoint(WeldJoint(name, F, M, X_FM))
+
+
+def _remove(plant: MultibodyPlant, joint: Joint) -> None:
+    """Remove a joint, its motors, and all constraints between joints, which Drake asks for.
+
+    Those are of joints that mimic others, which are held where they rest.
+    """
+    for constraint in plant.GetConstraintIds():
+        plant.RemoveConstraint(constraint)
     for index in list(plant.GetJointActuatorIndices()):
         motor = plant.get_joint_actuator(index)
         if motor.joint().index() == joint.index():
             plant.RemoveJointActuator(motor)
-    name, F, M = joint.name(), joint.frame_on_parent(), joint.frame_on_child()
     plant.RemoveJoint(joint)
-    plant.AddJoint(WeldJoint(name, F, M, X_FM))

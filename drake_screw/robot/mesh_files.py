@@ -6,6 +6,7 @@ import hashlib
 import importlib
 import logging
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,7 +18,7 @@ from drake_screw.files import cache_folder, write_text
 from drake_screw.typing import Array
 
 CONVERTED = (".stl", ".dae", ".glb", ".ply", ".off")
-"""Formats that are converted."""
+"""Formats that are converted because Drake does not read them."""
 
 MOST_FACES = 8_000
 """Triangles of a look; meshes of more are coarsened, so that pages stay small."""
@@ -60,7 +61,7 @@ def hull_file(file: Path) -> Path:
         number[hull.vertices] = np.arange(len(hull.vertices))
         part = _Part(points[hull.vertices], number[hull.simplices], None)
         write_text(kept, "".join(_lines([part])))
-        _log.info("hull of %s: %d corners", file, len(hull.vertices))
+        _log.debug("hull of %s: %d corners", file, len(hull.vertices))
     return kept
 
 
@@ -100,7 +101,7 @@ def _kept(file: Path, what: str) -> Path:
 def _parts(file: Path) -> list[_Part]:
     """The meshes in a file, each where it is in the file's frame."""
     suffix = file.suffix.lower()
-    if suffix not in CONVERTED:
+    if suffix not in (*CONVERTED, ".obj"):
         raise ModelError(
             f"is of a kind ('{file.suffix}') that neither Drake reads nor we convert", file=file
         )
@@ -114,6 +115,7 @@ def _parts(file: Path) -> list[_Part]:
             "(pip install 'drake-screw[meshes]')",
             file=file,
         ) from error
+    _announce()
     try:
         scene = trimesh.load_scene(str(file))
         parts = list(_placed(scene, 1.0 if suffix != ".dae" else _unit(file)))
@@ -126,6 +128,11 @@ def _parts(file: Path) -> list[_Part]:
         turned = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
         parts = [part._replace(vertices=part.vertices @ turned.T) for part in parts]
     return parts
+
+
+@lru_cache
+def _announce() -> None:
+    _log.info("converting meshes, once; this takes a few seconds")
 
 
 def _placed(scene: Any, unit: float) -> Iterator[_Part]:

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import ModelInstanceIndex
+from pydrake.multibody.tree import Joint, ModelInstanceIndex
 
 from drake_screw.errors import ModelError
+from drake_screw.robot.base import Trees
 from drake_screw.robot.names import called, find_joint
 
 
@@ -75,6 +76,9 @@ def follow(
 ) -> None:
     """Make the defaults of joints that mimic others follow those of the others.
 
+    What follows a joint of the arm stays where it is by default: nothing else moves with an arm's
+    joints. So it must not matter to collisions.
+
     Args:
         plant: before it is finalized, the defaults of its other joints set.
         robot: its models.
@@ -83,22 +87,35 @@ def follow(
         parked: names of those that rest where they are put, whatever they mimic.
 
     Raises:
-        ModelError: a joint of the arm follows another one, or is followed by one.
+        ModelError: a joint of the arm follows another one, or is followed by one that moves a
+            collision shape.
     """
+    trees = Trees.of(plant, robot)
     for _ in mimics:  # one may follow one that follows
         for mimic in mimics:
             follower = find_joint(plant, mimic.follower, robot)
             leader = find_joint(plant, mimic.leader, robot)
-            for joint in joints:
-                if called(follower, joint) or called(leader, joint):
-                    raise ModelError(
-                        f"joint '{mimic.follower}' mimics joint '{mimic.leader}', and "
-                        f"'{joint}' is a joint of the arm",
-                        remedy="An arm's joints move by themselves, and nothing else moves with "
-                        "them: leave the joint out of the arm, or take <mimic> out of the model.",
-                    )
+            own = [name for name in joints if called(follower, name)]
+            if not own and _shaped(trees, follower):
+                own = [name for name in joints if called(leader, name)]
+            if own:
+                raise ModelError(
+                    f"joint '{mimic.follower}' mimics joint '{mimic.leader}', and '{own[0]}' is a "
+                    "joint of the arm",
+                    remedy="An arm's joints move by themselves, and nothing that may collide moves "
+                    "with them: leave the joint out of the arm, or take <mimic> out of the model.",
+                )
             if any(called(follower, name) for name in parked):
                 continue
             if leader.num_positions() == follower.num_positions() == 1:
                 value = mimic.multiplier * float(leader.default_positions()[0]) + mimic.offset
                 follower.set_default_positions([value])
+
+
+def _shaped(trees: Trees, joint: Joint) -> bool:
+    """Whether a joint moves something that has a collision shape."""
+    return any(
+        trees.plant.GetCollisionGeometriesForBody(body)
+        and any(above.index() == joint.index() for above in trees.way_up(body))
+        for body in trees.bodies
+    )

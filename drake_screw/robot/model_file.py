@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from drake_screw.errors import ModelError
@@ -103,7 +104,7 @@ def model_file(
     if not is_xacro and not meshes.changed and not changed:
         return ModelFile(file, file, file_hash(file))
     for shape in meshes.left_out:
-        _log.info("%s: %s shape left out: %s", file, shape.role, shape)
+        _log.debug("%s: %s shape left out: %s", file, shape.role, shape)
     make_absolute(root, file.parent, place.packages)
     suffix = KINDS.get(root.tag, file.suffix.lower())
     hash = file_hash(file) if not is_xacro else hashlib.sha256(original.encode()).hexdigest()
@@ -143,13 +144,21 @@ def _mend(root: ET.Element, place: ModelPlace, *, shapes: bool) -> bool:
         elif mimic is not None and joints.get(mimic.get("joint")) in (None, "fixed"):
             joint.remove(mimic)
             changed = True
-            _log.warning(
-                "%s: joint '%s' is to follow '%s', which does not move; it is held instead",
-                place.file,
-                joint.get("name"),
-                mimic.get("joint"),
+            _tell(
+                f"{place.file}: joint '{joint.get('name')}' is to follow '{mimic.get('joint')}', "
+                "which does not move; it is a joint of its own now"
             )
+    for transmission in root.findall("transmission"):
+        if any(joint.get("name") not in joints for joint in transmission.iterfind("joint")):
+            root.remove(transmission)
+            changed = True
     return changed
+
+
+@lru_cache
+def _tell(warning: str) -> None:
+    """Once, however often the model is read."""
+    _log.warning(warning)
 
 
 def _has_file(place: ModelPlace) -> Callable[[str], bool]:

@@ -13,6 +13,9 @@ from drake_screw.robot.mesh_files import content_hash, hull_file, look_file
 from drake_screw.robot.packages import Packages, split_address
 from drake_screw.robot.shapes import MESH_SUFFIXES
 
+LARGE = 1_000_000
+"""Bytes of an OBJ file that is too large to look at."""
+
 Role = Literal["collision", "visual"]
 
 
@@ -124,6 +127,16 @@ def _leads_nowhere(address: str) -> bool:
     return "://" in address and not address.startswith("file://")
 
 
+def _light(file: Path) -> Path:
+    """A look that pages can carry: a large OBJ file is coarsened, where that can be done."""
+    if file.suffix.lower() != ".obj" or file.stat().st_size < LARGE:
+        return file
+    try:
+        return look_file(file)
+    except ModelError:
+        return file
+
+
 def _readable(file: Path | None, role: Role) -> Path:
     """A file with the mesh, or its hull where that is what matters, that Drake reads."""
     if file is None:
@@ -131,6 +144,6 @@ def _readable(file: Path | None, role: Role) -> Path:
     if not file.is_file():
         raise ModelError("does not exist")
     if file.suffix.lower() in MESH_SUFFIXES:
-        return file
+        return _light(file) if role == "visual" else file
     convert: dict[Role, Callable[[Path], Path]] = {"collision": hull_file, "visual": look_file}
     return convert[role](file)

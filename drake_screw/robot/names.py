@@ -43,7 +43,8 @@ def find_frame(
         ModelError: there is none, or more than one.
     """
     frames = [plant.get_frame(FrameIndex(i)) for i in range(plant.num_frames())]
-    return _the_one(kind, name, _of(frames, robot), _named_by_people, where)
+    made = _made_by_drake(plant)
+    return _the_one(kind, name, _of(frames, robot), lambda F: F.name() not in made, where)
 
 
 def find_joint(plant: MultibodyPlant, name: str, robot: Instances | None = None) -> Joint:
@@ -102,14 +103,13 @@ def _the_one(
     raise ModelError(message, remedy=remedy)
 
 
-def _named_by_people(frame: Frame) -> bool:
-    """Whether it is not the world, nor a frame that Drake makes at each end of a joint or weld."""
-    name = frame.name()
-    if name == "world" or name.startswith("_") or name.endswith(("_parent", "_child")):
-        return False
-    plant = frame.GetParentPlant()
+def _made_by_drake(plant: MultibodyPlant) -> set[str]:
+    """Names of the frames that Drake makes for joints and welds, and of the world."""
     joints = [plant.get_joint(i).name() for i in plant.GetJointIndices()]
-    return not (name.endswith(("_F", "_M")) and any(name.startswith(f"{j}_") for j in joints))
+    frames = [plant.get_frame(FrameIndex(i)).name() for i in range(plant.num_frames())]
+    made = {f"{joint}_{end}" for joint in joints for end in ("parent", "child")}
+    made |= {f"{joint}_{name}_{end}" for joint in joints for name in frames for end in ("F", "M")}
+    return {"world", *made, *(name for name in frames if name.startswith("_"))}
 
 
 def check_apart(plant: MultibodyPlant, kind: str, names: Iterable[str]) -> None:

@@ -12,6 +12,7 @@ from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import RigidBody
 
 from drake_screw.errors import ModelError
+from drake_screw.robot.mesh_files import CONVERTED, hull_file
 from drake_screw.typing import Array
 
 MESH_SUFFIXES = (".obj", ".gltf", ".vtk")
@@ -141,19 +142,28 @@ def _circle(radius: float, z: float) -> Array:
 
 
 def _hull(file: Path, scale: float) -> Convex:
-    remedy = f"Give the path of a mesh: {', '.join(MESH_SUFFIXES[:-1])} or {MESH_SUFFIXES[-1]}."
+    others = ", ".join(CONVERTED)
+    remedy = (
+        f"Give the path of a mesh: {', '.join(MESH_SUFFIXES[:-1])} or {MESH_SUFFIXES[-1]}; "
+        f"{others} are converted."
+    )
     if not file.exists():
         raise ModelError("there is no such mesh", remedy=remedy, file=file)
     if not file.is_file():
         raise ModelError("expected a mesh, found a folder", remedy=remedy, file=file)
-    if file.suffix.lower() not in MESH_SUFFIXES:
+    suffix = file.suffix.lower()
+    if suffix not in (*MESH_SUFFIXES, *CONVERTED):
         raise ModelError(
-            f"'{file.suffix}' is no kind of mesh that Drake makes a convex hull of",
-            remedy=f"{remedy} Others have to be converted.",
+            f"'{file.suffix}' is no kind of mesh that a convex hull can be made of",
+            remedy=remedy,
             file=file,
         )
     try:
-        shape = Convex(str(file), scale)
+        read = hull_file(file) if suffix in CONVERTED else file
+    except ModelError as error:
+        raise ModelError(f"this mesh {error.message}", remedy=remedy, file=file) from error
+    try:
+        shape = Convex(str(read), scale)
         shape.GetConvexHull()
     except (RuntimeError, ValueError) as error:
         message = f"Drake cannot read this mesh: {error}"

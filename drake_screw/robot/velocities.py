@@ -21,7 +21,7 @@ SLIDING = 0.25
 
 
 def velocity_limits(
-    joints: Sequence[Joint], names: Sequence[str], given: Mapping[str, float]
+    joints: Sequence[Joint], given: Mapping[str, float], names: Sequence[str]
 ) -> tuple[Array, tuple[str, ...]]:
     """The arm's velocity limits, each finite and above 0.
 
@@ -29,6 +29,7 @@ def velocity_limits(
         joints: the arm's n joints, each with one degree of freedom.
         names: theirs, as the scenario has them.
         given: rad/s or m/s, limits that hold in place of the model's, by names.
+        names: what the joints are called there.
 
     Returns:
         (n,) rad/s or m/s, and the names of joints that no one states a limit of.
@@ -40,7 +41,7 @@ def velocity_limits(
         if name not in names:
             raise ModelError(
                 f"robot.velocity_limits: '{name}' is no joint of the arm",
-                remedy=suggestion(name, names, "Joints"),
+                remedy=suggestion(name, list(names), "Joints"),
             )
     limits, assumed = [], []
     for joint, name in zip(joints, names, strict=True):

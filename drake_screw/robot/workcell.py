@@ -22,7 +22,7 @@ from pydrake.planning import (
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.arm import Arm
-from drake_screw.robot.ignored import ignore_collisions
+from drake_screw.robot.ignored import ignore, ignore_collisions, ignored_pairs
 from drake_screw.robot.model_file import ModelFile
 from drake_screw.robot.names import shown_name
 from drake_screw.robot.obstacles import ObstacleConfig
@@ -210,7 +210,8 @@ def build_workcell(
     if robot.tool is not None and added.tool is not None:
         arm.held(robot.tool.frame)
         let_touch(plant, scene_graph, added.tool, robot.tool.touches)
-    unknown_links = ignore_collisions(plant, scene_graph, added.instances, robot)
+    ignore_collisions(plant, scene_graph, added.models, robot.ignore_collisions)
+    unknown_links = ignore(plant, scene_graph, added.models, ignored_pairs(robot))
     diagram = builder.Build()
     arm.owner = diagram
     checker = SceneGraphCollisionChecker(

@@ -31,7 +31,8 @@ class ShapeBlock(Block):
     sphere: SphereBlock | None = None
     """a sphere"""
     mesh: MeshFile | None = None
-    """a mesh, .obj, .gltf or tetrahedral .vtk, relative to the scenario file; it counts, and is
+    """a mesh, .obj, .gltf or tetrahedral .vtk, or one that is converted (.stl, .dae, .glb, .ply,
+    .off, by `drake-screw[meshes]`), relative to the scenario file; it counts, and is
     drawn, as its convex hull"""
     scale: Positive | None = None
     """by how much a mesh's coordinates are multiplied to be in m; 1 if left out"""

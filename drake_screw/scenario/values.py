@@ -161,8 +161,6 @@ Positive = Annotated[float, Field(gt=0)]
 Probability = Annotated[float, Field(gt=0, lt=1)]
 Option = bool | int | float | str
 Options = Annotated[dict[str, Option], BeforeValidator(_nothing_is_empty)]
-Packages = Annotated[dict[str, Folder], BeforeValidator(_nothing_is_empty)]
-"""Folders by the names of packages."""
 Pairs = Annotated[
     tuple[tuple[str, str], ...],
     WithJsonSchema(
@@ -174,4 +172,6 @@ Pairs = Annotated[
     ),
 ]
 Limits = Annotated[dict[str, Positive], BeforeValidator(_nothing_is_empty)]
+Packages = Annotated[dict[str, Folder], BeforeValidator(_nothing_is_empty)]
+"""Folders by the names of packages."""
 Angles = Annotated[dict[str, float], BeforeValidator(_nothing_is_empty)]

@@ -39,19 +39,12 @@ class RobotBlock(Block):
     start: Annotated[tuple[float, ...], RADIANS]
     """joint angles from which every plan starts, in the order of `joints`"""
     base: str = "base"
-    """name of the frame fixed to the world's origin"""
+    """name of the link or frame at the world's origin, z up, whatever holds the robot; what is
+    between it and the model's root is held. `world` leaves the model where it puts itself"""
     parked: Annotated[Angles, RADIANS] = Field(default={})
     """where other joints rest; joints not named rest at the model's default"""
     tool: ToolBlock | None = None
     """what the end effector holds"""
-    packages: Packages = Field(default={})
-    """folders of packages that the model speaks of as `package://NAME/...` and that are not found
-    by themselves"""
-    xacro: Options = Field(default={})
-    """arguments of a model that is written in xacro"""
-    srdf: Address | None = None
-    """path of the SRDF file that says which links may touch one another, relative to the scenario
-    file, or its address in a package"""
     velocity_limits: Annotated[Limits, Field(json_schema_extra={"unit": "rad/s"})] = Field(
         default={}
     )
@@ -61,6 +54,14 @@ class RobotBlock(Block):
     ignore_collisions: Pairs = ()
     """pairs of links that may touch, [[left_finger, right_finger], ...]: whether they do is not
     looked at. One of a pair may be `table` or an obstacle"""
+    packages: Packages = Field(default={})
+    """folders of packages that the model speaks of as `package://NAME/...` and that are not found
+    by themselves"""
+    xacro: Options = Field(default={})
+    """arguments of a model that is written in xacro"""
+    srdf: Address | None = None
+    """path of the SRDF file that says which links may touch one another, relative to the scenario
+    file, or its address in a package"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")

@@ -200,6 +200,22 @@ def test_joints_out_of_order_are_refused(names: list[str]) -> None:
         Arm(plant_of(sdf(PLANAR)), names, "hand")
 
 
+def test_joints_without_limits_are_left_out_of_margins() -> None:
+    arm = arm_of((replace(PLANAR[0], limits=None), *PLANAR[1:]))
+    np.testing.assert_array_equal(arm.endless, [True, False, False])
+    np.testing.assert_array_equal(arm.middle, 0.0)
+    np.testing.assert_array_equal(arm.margin([50.0, 1.0, -2.6]), [np.inf, 1.5, pytest.approx(-0.1)])
+    np.testing.assert_allclose(arm.pose([0.3, 0.2, 0.1]), arm.pose([0.3 + 6 * np.pi, 0.2, 0.1]))
+    chain = arm.screw_chain()
+    assert (np.isneginf(chain.lower[0]), np.isposinf(chain.upper[0])) == (True, True)
+    assert np.isfinite([chain.reach, *chain.shoulder]).all()
+
+
+def test_a_prismatic_joint_needs_limits() -> None:
+    with pytest.raises(ModelError, match="joint 'rail' has no position limits"):
+        arm_of((replace(SLIDING[0], limits=None), *SLIDING[1:]))
+
+
 def test_only_names_that_the_model_gives_are_listed(tmp_path: Path) -> None:
     """Neither what stands around nor the frames that Drake makes for joints and welds."""
     file = tmp_path / "sliding.sdf"

@@ -10,9 +10,11 @@ import pytest
 from pydrake.geometry import Convex
 
 from drake_screw.errors import ModelError
-from drake_screw.robot import RobotConfig, Workcell, build_workcell
+from drake_screw.files import file_hash
+from drake_screw.robot import MeshShape, PlacedShape, RobotConfig, Workcell, build_workcell
 from drake_screw.robot.mesh_files import MOST_FACES, hull_file, look_file
 from drake_screw.robot.model_file import ModelFile, model_file
+from drake_screw.robot.model_meshes import LARGE
 from drake_screw.robot.packages import ModelPlace
 from drake_screw.typing import Array
 from tests.robot.small_arms import PLANAR, sdf
@@ -146,6 +148,31 @@ def test_a_robot_with_such_meshes_is_planned_with_their_hulls(tmp_path: Path) ->
     assert read(robot).hash != before
 
 
+def test_obstacles_and_tools_may_be_such_meshes(tmp_path: Path) -> None:
+    pytest.importorskip("trimesh")
+    (tmp_path / "small.stl").write_text(stl())
+    shape = PlacedShape(MeshShape(tmp_path / "small.stl", 2.0))
+    assert shape.corners().max(axis=0) == pytest.approx([0.2, 0.4, 0.6])
+    (tmp_path / "small.stl").write_text(stl(CORNERS * [1.0, 1.0, 0.0]))
+    with pytest.raises(ModelError, match="this mesh is flat"):
+        shape.corners()
+
+
+def test_a_large_obj_file_is_coarsened_to_be_looked_at(tmp_path: Path) -> None:
+    """Pages hold all meshes; as a collision shape it stays as it is."""
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere(subdivisions=6, radius=0.05)
+    (tmp_path / "ball.obj").write_text(trimesh.exchange.obj.export_obj(ball, digits=8))
+    assert (tmp_path / "ball.obj").stat().st_size > LARGE
+    model = read(arm(tmp_path, "ball.obj", look="ball.obj"))
+    text = model.read.read_text()
+    assert f"<uri>{tmp_path / 'ball.obj'}</uri>" in text
+    (look,) = (tmp_path / "cache").glob("drake_screw/meshes/*.obj")
+    assert f"<uri>{look}</uri>" in text
+    assert look.stat().st_size < LARGE / 2
+    assert model.hash == file_hash(model.file)
+
+
 def test_a_model_that_drake_reads_stays_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "small.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
     model = read(arm(tmp_path, "small.obj"))
@@ -231,17 +258,18 @@ def test_materials_of_one_name_are_told_apart(tmp_path: Path) -> None:
 def test_oddities_of_published_models_are_no_matter(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """No name, fixed joints that follow others, joints that follow fixed ones, no package."""
+    """No name, fixed joints that follow, joints that follow fixed ones, motors of none."""
     limits = "<axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='1'/>"
     joints = "".join(
         f"<link name='{name}'/><joint name='{name}_joint' type='{kind}'><parent link='base'/>"
         f"<child link='{name}'/>{limits}{mimic}</joint>"
-        for name, kind, mimic in (
-            ("hand", "revolute", ""),
-            ("fixed", "fixed", "<mimic joint='hand_joint'/>"),
-            ("left", "revolute", "<mimic joint='fixed_joint'/>"),
-            ("finger", "revolute", ""),
-            ("right", "revolute", "<mimic joint='finger_joint'/>"),
+        f"<transmission name='{name}'><type>transmission_interface/SimpleTransmission</type>"
+        f"<joint name='{motor}'/><actuator name='{name}_motor'/></transmission>"
+        for name, kind, mimic, motor in (
+            ("hand", "revolute", "", "hand_joint"),
+            ("fixed", "fixed", "<mimic joint='hand_joint'/>", "gone_joint"),
+            ("left", "revolute", "<mimic joint='fixed_joint'/>", "gone_joint"),
+            ("right", "revolute", "<mimic joint='hand_joint'/>", "gone_joint"),
         )
     )
     look = "<visual><geometry><mesh filename='package:///a.obj'/></geometry></visual>"
@@ -250,4 +278,5 @@ def test_oddities_of_published_models_are_no_matter(
     cell = build_workcell(RobotConfig(str(file), ("hand_joint",), "hand", (0.0,)))
     assert [s.reason for s in cell.model.left_out] == ["is at an address that leads nowhere"]
     assert cell.model.read.read_text().count("<mimic") == 1
+    assert cell.model.read.read_text().count("<transmission") == 1
     assert "'left_joint' is to follow 'fixed_joint', which does not move" in caplog.text

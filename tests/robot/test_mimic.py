@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pydrake.systems.analysis import Simulator
 
 from drake_screw.errors import ModelError
 from drake_screw.execution.station import build_station
 from drake_screw.robot import RobotConfig, Workcell, build_workcell
 from drake_screw.robot.mimic import Mimic, mimics_in
-from tests.robot.test_base import NONE, joint, link, urdf
+from tests.robot.test_base import BALL, NONE, joint, link, urdf
 
 FINGERS = (
     link("right")
@@ -55,10 +56,30 @@ def test_they_are_held_there_when_plans_are_executed(tmp_path: Path) -> None:
     assert other == pytest.approx(-0.5)
 
 
-def test_a_joint_of_the_arm_neither_follows_nor_leads(tmp_path: Path) -> None:
+def test_joints_above_the_base_are_held_beside_joints_that_mimic(tmp_path: Path) -> None:
+    """Drake has constraints for those, and removes no joint while there are any."""
+    file = tmp_path / "small.urdf"
+    lift = link("foot") + joint("lift", "foot", "base_link", "prismatic", "0 0 0.5")
+    for before in (lift, "<link name='world'/>" + joint("w", "world", "base_link", "fixed")):
+        file.write_text(urdf(before, FINGERS))
+        robot = RobotConfig(
+            str(file), ("j1", "j2", "j3"), "l3", (0.0,) * 3, "base_link", {"finger": 0.3}
+        )
+        assert resting(build_workcell(robot), "finger", "other") == pytest.approx([0.3, -0.5])
+        station = build_station(robot)
+        root = station.context([0.1, 0.2, 0.3], NONE)
+        Simulator(station.diagram, root).AdvanceTo(0.1)
+        context = station.plant.GetMyContextFromRoot(root)
+        other = station.plant.GetJointByName("other").GetOnePosition(context)
+        assert other == pytest.approx(-0.5, abs=1e-3)
+
+
+def test_a_joint_of_the_arm_neither_follows_nor_leads_what_may_collide(tmp_path: Path) -> None:
     leads = FINGERS.replace("mimic joint='finger'", "mimic joint='j3'")
     with pytest.raises(ModelError, match="'other' mimics joint 'j3', and 'j3' is a joint of the"):
         build_workcell(config(tmp_path, leads))
+    bare = leads.replace(BALL, "")
+    assert resting(build_workcell(config(tmp_path, bare)), "other") == [0.1]
     follows = urdf("", "").replace(
         "<child link='l3'/>", "<child link='l3'/><mimic joint='j2' multiplier='-1'/>"
     )

@@ -249,7 +249,7 @@ def test_every_thing_needs_a_name_of_its_own(model: Path, names: list[str], kind
     ("name", "text", "message"),
     [
         ("gone.obj", None, "there is no such mesh"),
-        ("part.stl", "solid a\nendsolid a\n", "'.stl' is no kind of mesh"),
+        ("part.step", "ISO-10303-21;", "'.step' is no kind of mesh"),
         ("words.obj", "hello\n", "Drake cannot read this mesh"),
         ("line.obj", "v 0 0 0\nv 1 0 0\n", "Drake cannot read this mesh"),
         ("broken.gltf", "{}", "Drake cannot read this mesh"),

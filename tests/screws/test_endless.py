@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
-import pytest
 
-from drake_screw.errors import ModelError
 from drake_screw.screws.endless import (
     brought_near,
     drawn_range,
@@ -16,7 +12,6 @@ from drake_screw.screws.endless import (
     unwrapped,
     within_a_turn,
 )
-from tests.robot.small_arms import PLANAR, SLIDING, arm_of
 
 LOWER, UPPER = np.array([-np.inf, -1.0, 0.0]), np.array([np.inf, 2.0, 0.5])
 
@@ -27,22 +22,6 @@ def test_which_they_are_and_what_stands_for_their_limits() -> None:
     np.testing.assert_allclose(lower, [-np.pi, -1.0, 0.0])
     np.testing.assert_allclose(upper, [np.pi, 2.0, 0.5])
     np.testing.assert_allclose(middles(LOWER, UPPER), [0.0, 0.5, 0.25])
-
-
-def test_an_arm_takes_them_and_leaves_them_out_of_its_margins() -> None:
-    arm = arm_of((replace(PLANAR[0], limits=None), *PLANAR[1:]))
-    np.testing.assert_array_equal(arm.endless, [True, False, False])
-    np.testing.assert_array_equal(arm.middle, 0.0)
-    np.testing.assert_array_equal(arm.margin([50.0, 1.0, -2.6]), [np.inf, 1.5, pytest.approx(-0.1)])
-    np.testing.assert_allclose(arm.pose([0.3, 0.2, 0.1]), arm.pose([0.3 + 6 * np.pi, 0.2, 0.1]))
-    chain = arm.screw_chain()
-    assert (np.isneginf(chain.lower[0]), np.isposinf(chain.upper[0])) == (True, True)
-    assert np.isfinite([chain.reach, *chain.shoulder]).all()
-
-
-def test_a_prismatic_joint_needs_limits() -> None:
-    with pytest.raises(ModelError, match="joint 'rail' has no position limits"):
-        arm_of((replace(SLIDING[0], limits=None), *SLIDING[1:]))
 
 
 def test_brought_near_is_the_same_pose_within_half_a_turn() -> None:
