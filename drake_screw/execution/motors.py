@@ -19,6 +19,7 @@ from drake_screw.typing import Array
 
 STIFFNESS = 80.0  # 1/rad: position gains as multiples of a joint's greatest effort
 DAMPING = 0.05  # s: velocity gains as multiples of position gains
+LAG = 5e-3  # s: by no more than what a joint moves in that time does its friction hold it back
 UNRATED = 100.0  # N m, greatest effort assumed for gains where the model states none that is true
 MOST_EFFORT = 1e4  # N m; more than this is no statement
 NEGLIGIBLE = 1e-12  # kg m^2 (kg, where it slides): no inertia at all
@@ -31,6 +32,7 @@ def motorise(plant: MultibodyPlant, robot: Sequence[ModelInstanceIndex]) -> None
         actuator = driven.get(joint.index()) or plant.AddJointActuator(joint.name(), joint)
         effort = actuator.effort_limit()
         p = STIFFNESS * (effort if effort < MOST_EFFORT else UNRATED)
+        p = max(p, float(joint.default_damping_vector()[0]) / LAG)
         actuator.set_controller_gains(PdControllerGains(p=p, d=DAMPING * p))
 
 

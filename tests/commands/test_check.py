@@ -16,7 +16,7 @@ def test_check_tells_what_would_run(command) -> None:
     code, out, _ = command("check", "pouring")
     assert code == 0
     assert "strategy   eprocess" in out
-    assert "asks       earliest; at a random place first" in out
+    assert "asks       earliest; at the corner farthest from the shoulder first" in out
     assert "1,440 in a first round where nothing fails (90 in each region)" in " ".join(out.split())
 
 

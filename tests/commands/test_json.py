@@ -59,8 +59,8 @@ def test_run_and_report_give_the_same(command: Command) -> None:
 
 def test_an_end_without_certificate_is_a_result(command: Command) -> None:
     code, out, _ = command(
-        "run", "pouring", "--set", "demonstrations.budget=1", "--output", "here", "-q",
-        "--json", "-",
+        "run", "pouring", "--set", "demonstrations.budget=1", "--set", "objects.0.symmetry=null",
+        "--output", "here", "-q", "--json", "-",
     )  # fmt: skip
     result = json.loads(out)
     assert code == 1

@@ -126,3 +126,19 @@ def test_recordings_speak_of_a_slide_in_millimetres() -> None:
         "clamped turn to the limit (beyond it by 0.50 mrad)",
         "clamped lift to the limit (beyond it by 0.50 mm)",
     )
+
+
+def test_a_slide_with_much_friction_is_driven_all_the_same(tmp_path: Path) -> None:
+    """As of a torso that holds itself: 20,000 N s/m."""
+    robot = Setup(lifted(tmp_path, 0.1)).robot
+    stuck = "<child link='column'/><dynamics damping='20000'/>"
+    text = urdf(transmissions=NAMES, lift=(0.0, 0.25)).replace("<child link='column'/>", stuck)
+    (tmp_path / "six.urdf").write_text(text)
+    station = build_station(robot)
+    X = station.arm.pose(q_start := np.array([0.1, *START]))
+    guide = X @ pose(np.eye(3), [0.0, 0.05, -0.05])
+    plan = ReferencePlanner(station.arm, step=0.02).plan(q_start, guide[None])
+    timed = time_plan(plan, np.stack([X, guide]), station.arm)
+    report = simulate(station, timed, np.empty((0, 4, 4))).report
+    assert report.flawless, str(report.status)
+    assert report.tracking.position < 2e-3
