@@ -87,16 +87,7 @@ def ignored_pairs(robot: RobotConfig) -> tuple[IgnoredPair, ...]:
     return read_srdf(srdf_file(robot.srdf, packages), packages).pairs
 
 
-def remedy_for(pairs: Sequence[Pair]) -> str:
-    """The lines of a scenario that let pairs touch."""
-    return f"ignore_collisions: [{', '.join(f'[{a}, {b}]' for a, b in pairs)}]"
-
-
-def _named(bodies: Sequence[RigidBody], name: str) -> list[RigidBody]:
-    return [body for body in bodies if called(body, name)]
-
-
-def _exclude(
+def ignore(
     plant: MultibodyPlant,
     scene_graph: SceneGraph,
     robot: Sequence[ModelInstanceIndex],

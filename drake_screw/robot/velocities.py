@@ -27,7 +27,6 @@ def velocity_limits(
 
     Args:
         joints: the arm's n joints, each with one degree of freedom.
-        names: theirs, as the scenario has them.
         given: rad/s or m/s, limits that hold in place of the model's, by names.
         names: what the joints are called there.
 
