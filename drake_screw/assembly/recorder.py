@@ -90,12 +90,13 @@ class Recorder:
             (0.0,) * len(block.joints),
             block.base,
             block.parked,
+            end_effector_rotation=block.end_effector_rotation,
         )
         plant = MultibodyPlant(0.0)
         try:
             file = add_robot(Parser(plant), config)[0]
             plant.Finalize()
-            arm = Arm(plant, config.joints, config.end_effector, parked=config.parked)
+            arm = Arm(plant, config.joints, config.frame, parked=config.parked)
         except ModelError as error:
             raise ModelError(
                 f"recorded_on: {error.message}", remedy=error.remedy, file=error.file

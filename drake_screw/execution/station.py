@@ -211,7 +211,7 @@ def _kinematics(robot: RobotConfig) -> Arm:
     plant = MultibodyPlant(0.0)
     add_robot(Parser(plant), robot)
     plant.Finalize()
-    return Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
+    return Arm(plant, robot.joints, robot.frame, parked=robot.parked)
 
 
 def _joints(plant: MultibodyPlant, robot: ModelInstanceIndex, arm: Arm) -> tuple[Array, Array]:

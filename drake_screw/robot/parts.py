@@ -9,13 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 from pydrake.geometry import Box, Cylinder
-from pydrake.math import RigidTransform
+from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
+from pydrake.multibody.tree import FixedOffsetFrame, ModelInstanceIndex, RigidBody, SpatialInertia
 
 from drake_screw.errors import ModelError, unknown
 from drake_screw.resources import MODEL_SUFFIXES, find_resource
+from drake_screw.robot.arm import find_frame
 from drake_screw.robot.model_text import check_collision_shapes
 from drake_screw.robot.names import check_apart
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
@@ -37,6 +38,18 @@ class RobotConfig:
     base: str = "base"
     parked: Mapping[str, float] = field(default_factory=dict)
     tool: ToolConfig | None = None
+    end_effector_rotation: tuple[float, float, float] | None = None
+
+    @property
+    def frame(self) -> str:
+        """The frame E in the plant: the end effector's, or that turned by its rotation."""
+        turned = self.end_effector_rotation is not None
+        return turned_frame(self.end_effector) if turned else self.end_effector
+
+
+def turned_frame(end_effector: str) -> str:
+    """The name of an end effector's frame once it is turned by `end_effector_rotation`."""
+    return f"{end_effector}_turned"
 
 
 @dataclass(frozen=True)
@@ -93,8 +106,21 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     }
     if robot.base not in welded:
         plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(robot.base, instance))
+    if robot.end_effector_rotation is not None:
+        _turn_end_effector(plant, robot, file)
     tool = None if robot.tool is None else add_tool(plant, instance, robot.tool)
     return RobotInPlant(file, instance, tool)
+
+
+def _turn_end_effector(plant: MultibodyPlant, robot: RobotConfig, file: Path) -> None:
+    """Add the frame `robot.frame`, turned against the end effector's by roll, pitch and yaw."""
+    check_apart(plant, "the turned end effector", [robot.frame])
+    try:
+        named = find_frame(plant, robot.end_effector)
+    except ModelError as error:
+        raise ModelError(error.message, remedy=error.remedy, file=file) from error
+    X_NE = RigidTransform(RollPitchYaw(robot.end_effector_rotation), [0.0, 0.0, 0.0])
+    plant.AddFrame(FixedOffsetFrame(robot.frame, named, X_NE))
 
 
 def add_surroundings(

@@ -177,7 +177,7 @@ def build_workcell(
     model_file, instance, tool = add_robot(builder.parser(), robot)
     fixed, bodies = add_surroundings(plant, table, objects, obstacles)
     plant.Finalize()
-    arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
+    arm = Arm(plant, robot.joints, robot.frame, parked=robot.parked)
     if len(robot.start) != arm.n:
         raise ModelError(
             f"the start configuration has {len(robot.start)} angles for {arm.n} joints"

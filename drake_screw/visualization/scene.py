@@ -260,7 +260,7 @@ def _draw_workcell(
     add_robot(builder.parser(), robot)
     add_surroundings(plant, table, obstacles=obstacles)
     plant.Finalize()
-    arm = Arm(plant, robot.joints, robot.end_effector, parked=robot.parked)
+    arm = Arm(plant, robot.joints, robot.frame, parked=robot.parked)
     parameters = MeshcatVisualizerParams(prefix="/workcell")
     MeshcatVisualizer.AddToBuilder(builder.builder(), builder.scene_graph(), meshcat, parameters)
     diagram = builder.Build()
