@@ -80,7 +80,7 @@ def verify(
     trial: Trial,
     begin: Rectangle,
     shoulder: Array,
-    middle: float,
+    middle: tuple[float, float],
     spacing: float,
     say: Callable[[str], None],
 ) -> Verified | None:
@@ -90,7 +90,7 @@ def verify(
         trial: of the workcell and the start.
         begin: the area to begin with.
         shoulder: (3,) m.
-        middle: m, y that the area is to be around.
+        middle: (x, y) m, that the area is to be around.
         spacing: m, of the grid it is looked at on.
         say: told of each attempt.
 

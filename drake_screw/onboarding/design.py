@@ -29,7 +29,6 @@ from drake_screw.onboarding.start import Start, starts
 from drake_screw.onboarding.table import best_height, stands_on_the_table, table_under
 from drake_screw.onboarding.trial import Trial
 from drake_screw.robot import ObjectConfig, RobotConfig, ScrewChain, TableConfig, build_workcell
-from drake_screw.typing import Array
 
 BOWL = ObjectConfig("bowl", 0.08, 0.06)
 
@@ -38,6 +37,9 @@ SPACING = 0.05
 
 CLOSEST = 0.25
 """m, from the base's axis to the work area at least."""
+
+COMFORTABLE = 0.62
+"""Of the reach, where the middle of a work area is best."""
 
 STARTS = 4
 """That are tried."""
@@ -134,7 +136,7 @@ def design(
     if best is None:
         raise _no_area(robot, arm, top, "no start was found from which the teacher gets anywhere")
     start, planned = best
-    begin = _largest(planned, reach, chain)
+    begin = _largest(planned, chain)
     if begin is None:
         raise _no_area(robot, arm, top, "plans succeed nowhere on the table")
     table = table_under(begin, top, around_the_base=on_it)
@@ -196,21 +198,19 @@ def _reach(chain: ScrewChain, within: Range, top: float, task: str) -> ReachMap:
     return reach_map(chain, within, np.round(x, 6), np.round(y, 6), top, HOLDS[task])
 
 
-def _middle(chain: ScrewChain) -> float:
-    return float(chain.shoulder[1])
+def _middle(chain: ScrewChain) -> tuple[float, float]:
+    """x, y in m where a work area is best, as far as nothing else is against it."""
+    return float(chain.shoulder[0] + COMFORTABLE * chain.reach), float(chain.shoulder[1])
 
 
 def _likely(reach: ReachMap, chain: ScrewChain) -> Rectangle | None:
     """A first guess at the work area, from inverse kinematics alone."""
-    for share in (0.99, 0.6, 0.3):
-        found = best_rectangle(
-            reach.x, reach.y, reach.share >= share, most=LARGEST, middle=_middle(chain)
-        )
+    for share in (0.6, 0.0):
+        good = reach.share > share
+        found = best_rectangle(reach.x, reach.y, good, most=LARGEST, middle=_middle(chain))
         if found is not None and found.size[0] >= WANTED[0] - 1e-9 and found.size[1] >= WANTED[1]:
             return found
-    return best_rectangle(
-        reach.x, reach.y, reach.share > 0.0, most=LARGEST, middle=_middle(chain)
-    )
+    return found
 
 
 def _trial(
@@ -241,7 +241,7 @@ def _best_start(
     for number, start in enumerate(found):
         placed = replace(workcell, start=np.array(start.q))
         seen = survey(Trial(placed, task, top), reach.x, reach.y, np.array([corner]))
-        size = _size(seen, reach, chain)
+        size = _size(seen, chain)
         say(f"  start {number + 1}: one demonstration covers {size:.2f} m²")
         if best is None or size > 1.05 * best[0]:
             best = size, start, seen
@@ -253,18 +253,18 @@ def _best_start(
     placed = replace(workcell, start=np.array(start.q))
     nearer = [[x, y] for x in (likely.x[1] - NEARER, sum(likely.x) / 2.0) for y in likely.y]
     again = survey(Trial(placed, task, top), reach.x, reach.y, np.array(nearer))
-    return start, max(seen, again, key=lambda s: _size(s, reach, chain))
+    return start, max(seen, again, key=lambda s: _size(s, chain))
 
 
-def _size(seen: Survey, reach: ReachMap, chain: ScrewChain) -> float:
+def _size(seen: Survey, chain: ScrewChain) -> float:
     """m² of the largest rectangle that is covered."""
-    covered = _largest(seen, reach, chain)
+    covered = _largest(seen, chain)
     return 0.0 if covered is None else covered.area
 
 
-def _largest(seen: Survey, reach: ReachMap, chain: ScrewChain) -> Rectangle | None:
+def _largest(seen: Survey, chain: ScrewChain) -> Rectangle | None:
     return best_rectangle(
-        seen.x, seen.y, seen.good & (reach.share > 0.0), most=LARGEST, middle=_middle(chain)
+        seen.x, seen.y, seen.good, most=LARGEST, middle=_middle(chain)
     )
 
 
@@ -277,8 +277,3 @@ def _no_area(robot: Robot, arm: FoundArm, top: float, why: str) -> ModelError:
         file=robot.file,
     )
 
-
-def corners(area: Rectangle) -> Array:
-    """(5, 2) m, around an area and back."""
-    (x0, x1), (y0, y1) = area.x, area.y
-    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import Joint
+from pydrake.systems.framework import Context
 
 from drake_screw.onboarding.arms import FoundArm
 from drake_screw.onboarding.reading import Robot
@@ -62,10 +64,7 @@ def _opened(robot: Robot, arm: FoundArm, rest: dict[str, float]) -> dict[str, fl
 
         def spread(value: float) -> float:
             context = plant.CreateDefaultContext()
-            for other, at in {**rest, name: value}.items():  # noqa: B023
-                joint = plant.GetJointByName(other)
-                plant.GetPositions(context)
-                joint.SetPositions(context, [at])
+            _put(plant, context, {**rest, name: value})  # noqa: B023
             frame = last.frame_on_child()
             inspector = robot.diagram.scene_graph().model_inspector()
             away = []
@@ -86,6 +85,14 @@ def _opened(robot: Robot, arm: FoundArm, rest: dict[str, float]) -> dict[str, fl
     return opened
 
 
+def _put(plant: MultibodyPlant, context: Context, values: Mapping[str, float]) -> None:
+    """Set joints by name, rad or m."""
+    q = plant.GetPositions(context)
+    for name, value in values.items():
+        q[plant.GetJointByName(name).position_start()] = value
+    plant.SetPositions(context, q)
+
+
 def _across(joint: Joint, p: np.ndarray) -> np.ndarray:
     axis = joint.revolute_axis() if joint.type_name() == "revolute" else joint.translation_axis()
     return np.asarray(p - axis * (axis @ p))
@@ -102,8 +109,7 @@ def _tucked(
     root = robot.diagram.CreateDefaultContext()
     context = plant.GetMyMutableContextFromRoot(root)
     query = graph.get_query_output_port()
-    for name, value in rest.items():
-        plant.GetJointByName(name).SetPositions(context, [value])
+    _put(plant, context, rest)
     joints = [plant.GetJointByName(name) for name in other.joints]
     lower = np.array([max(j.position_lower_limits()[0], -np.pi) for j in joints])
     upper = np.array([min(j.position_upper_limits()[0], np.pi) for j in joints])
@@ -121,8 +127,7 @@ def _tucked(
     best: tuple[float, dict[str, float]] | None = None
     for u in rng.uniform(0.1, 0.9, (TUCKED, len(joints))):
         q = lower + u * (upper - lower)
-        for joint, value in zip(joints, q, strict=True):
-            joint.SetPositions(context, [value])
+        _put(plant, context, dict(zip(other.joints, map(float, q), strict=True)))
         p = np.array([link.EvalPoseInWorld(context).translation() for link in links])
         cost = float(p[:, 0].max() - 0.5 * (side * p[:, 1]).min() + 0.3 * p[:, 2].max())
         if best is not None and cost >= best[0]:

@@ -21,7 +21,7 @@ SHADES = ListedColormap([PAPER, "#dbe4ea", "#b5c9d6", "#8aacc0"])
 def reach_figure(design: Design) -> Figure:
     """Seen from above, x up and y to the left, as one looks along with the robot."""
     reach, planned, area = design.reach, design.planned, design.found.area
-    figure = Figure(figsize=(7.4, 5.6), layout="constrained")
+    figure = Figure(figsize=(8.0, 6.0))
     ax = figure.subplots()
     half = SPACING / 2.0
     edges_x = np.append(reach.x - half, reach.x[-1] + half)
@@ -52,10 +52,9 @@ def reach_figure(design: Design) -> Figure:
         markeredgecolor=INK, zorder=5, label="first demonstration",
     )  # fmt: skip
     _draw_arm(ax, design)
-    shares = ("no", "one", "two", "all three")
-    for number, words in enumerate(shares[1:], start=1):
-        label = f"{words} of the directions of approach reach it"
-        ax.plot([], [], "s", ms=8, color=SHADES.colors[number], label=label)
+    for number, words in enumerate(("one of three", "two", "all three"), start=1):
+        label = f"reached from {words}{' directions' if number == 1 else ''}"
+        ax.plot([], [], "s", ms=8, color=SHADES(number), label=label)
     ax.set_aspect("equal")
     ax.set_xlabel("y in m")
     ax.set_ylabel("x in m")
@@ -99,6 +98,7 @@ def save_reach_picture(design: Design, file: Path) -> None:
     """
     content = io.BytesIO()
     reach_figure(design).savefig(
-        content, format="png", dpi=150, metadata={"Software": None}, facecolor=PAPER
+        content, format="png", dpi=150, metadata={"Software": None}, facecolor=PAPER,
+        bbox_inches="tight",
     )
     write_bytes(file, content.getvalue())

@@ -40,18 +40,18 @@ def best_rectangle(
     good: NDArray[np.bool_],
     *,
     most: tuple[float, float],
-    middle: float,
+    middle: tuple[float, float],
     within: Rectangle | None = None,
 ) -> Rectangle | None:
     """The largest rectangle whose corners are grid points and which holds none that is not good.
 
-    Of rectangles of one size it is that nearest to y = middle, then the nearest to x = 0.
+    Of rectangles of one size it is that whose middle is the nearest to a point.
 
     Args:
         x, y: (X,), (Y,) m, evenly spaced.
         good: (X, Y).
         most: m, size along x and y beyond which no rectangle is better.
-        middle: m.
+        middle: (x, y) m.
         within: where it has to lie.
 
     Returns:
@@ -60,13 +60,13 @@ def best_rectangle(
     >>> import numpy as np
     >>> good = np.ones((4, 5), dtype=bool)
     >>> good[3, 4] = False
-    >>> best_rectangle(np.arange(4.0), np.arange(5.0), good, most=(9.0, 9.0), middle=2.0)
+    >>> best_rectangle(np.arange(4.0), np.arange(5.0), good, most=(9.0, 9.0), middle=(1.5, 2.0))
     Rectangle(x=(0.0, 3.0), y=(0.0, 3.0))
     """
     if within is not None:
         good = good & within.holds(x[:, None], y[None, :])
     bad = np.pad(np.cumsum(np.cumsum(~good, axis=0), axis=1), ((1, 0), (1, 0)))
-    best: tuple[tuple[float, float, float], Rectangle] | None = None
+    best: tuple[tuple[float, float], Rectangle] | None = None
     for i in range(len(x)):
         for k in range(i + 1, len(x)):
             if x[k] - x[i] > most[0] + 1e-9:
@@ -78,8 +78,8 @@ def best_rectangle(
                     if bad[k + 1, m + 1] - bad[i, m + 1] - bad[k + 1, j] + bad[i, j]:
                         break
                     size = float((x[k] - x[i]) * (y[m] - y[j]))
-                    off = abs(float(y[m] + y[j]) / 2.0 - middle)
-                    key = (round(size, 6), -round(off, 6), -float(x[i]))
+                    off = np.hypot((x[k] + x[i]) / 2 - middle[0], (y[m] + y[j]) / 2 - middle[1])
+                    key = round(size, 6), -round(float(off), 6)
                     if best is None or key > best[0]:
                         found = Rectangle((float(x[i]), float(x[k])), (float(y[j]), float(y[m])))
                         best = key, found

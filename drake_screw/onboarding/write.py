@@ -123,7 +123,7 @@ def assumptions(design: Design) -> list[str]:
         f"start: {design.start.margin:.2f} rad from the limits, the hand level (robot.start)"
     )
     lines.append(
-        f"work area: x {_numbers(found.area.x)}, y {_numbers(found.area.y)} m; one simulated "
+        f"work area: x {_range(found.area.x)} m, y {_range(found.area.y)} m; one simulated "
         f"demonstration covers {found.share:.1%} of it (objects.0.x and y)"
     )
     return [*lines, *(f"note: {remark}" for remark in design.remarks)]
@@ -196,6 +196,10 @@ def _numbers(values: object) -> str:
 
 def _number(value: float) -> str:
     return f"{round(float(value), 5) + 0.0:g}" if float(value) else "0.0"
+
+
+def _range(interval: tuple[float, float]) -> str:
+    return "..".join(map(_number, interval))
 
 
 def _quoted(text: str) -> str:
