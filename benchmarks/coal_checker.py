@@ -128,9 +128,8 @@ class CoalChecker:
         inspector, context = workcell.scene_graph.model_inspector(), plant.CreateDefaultContext()
         plant.SetPositions(context, arm.full_positions(np.zeros(arm.n)))
         moved_by: dict[BodyIndex, int] = {}
-        for i, name in enumerate(arm.joint_names):
-            joint = plant.GetJointByName(name).index()
-            for index in plant.GetBodiesKinematicallyAffectedBy([joint]):
+        for i, joint in enumerate(arm.joints):
+            for index in plant.GetBodiesKinematicallyAffectedBy([joint.index()]):
                 moved_by[index] = i + 1
         self._data = self._model.createData()
         self._pin.forwardKinematics(self._model, self._data, np.zeros(arm.n))

@@ -182,7 +182,7 @@ def depth(workcell: Workcell, q: Array, X_WO: Array) -> dict[str, Any]:
         return {"m": float("nan"), "bodies": []}
     k = int(distances.argmin())
     bodies = near.robot_indices()[k], near.other_indices()[k]
-    names = [workcell.plant.get_body(body).name() for body in bodies]
+    names = [workcell.name(body) for body in bodies]
     return {"m": float(distances[k]), "bodies": names}
 
 

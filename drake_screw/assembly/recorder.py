@@ -94,14 +94,14 @@ class Recorder:
         )
         plant = MultibodyPlant(0.0)
         try:
-            file = add_robot(Parser(plant), config)[0]
+            added = add_robot(Parser(plant), config)
             plant.Finalize()
-            arm = Arm(plant, config.joints, config.frame, parked=config.parked)
+            arm = added.arm()
         except ModelError as error:
             raise ModelError(
                 f"recorded_on: {error.message}", remedy=error.remedy, file=error.file
             ) from error
-        return cls(arm, own, area, str(block.model), file)
+        return cls(arm, own, area, str(block.model), added.file)
 
     def read(self, path: Path, format: str = FOLDER) -> Recording:
         """One recording, in a format that `plugins.find` knows.

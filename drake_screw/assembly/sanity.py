@@ -96,7 +96,7 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     def touching(name: str) -> list[str]:
         return [other for pair in pairs if name in pair for other in pair if other != name]
 
-    held = [] if workcell.tool is None else touching(workcell.tool.name())
+    held = [] if workcell.tool is None else touching(workcell.name(workcell.tool.index()))
     if held:
         raise ScenarioError(
             f"robot.tool.shape: the tool touches {_listed(held)} at the start",
@@ -105,7 +105,7 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
             file=scenario.source,
         )
     for i, body in enumerate(workcell.obstacles):
-        links = touching(body.name())
+        links = touching(workcell.name(body.index()))
         if links:
             raise ScenarioError(
                 f"obstacles.{i}: '{body.name()}' touches the robot's {_listed(links)} at the start",

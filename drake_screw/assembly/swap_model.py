@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.tree import Joint, RigidBody
 
 from drake_screw.errors import ModelError
 from drake_screw.robot import RobotConfig
+from drake_screw.robot.names import scoped
 from drake_screw.robot.parts import add_robot
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
@@ -29,10 +32,10 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     block = scenario.robot.model_copy(update={"model": str(Path(model).resolve())})
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
-    _, instance, _ = add_robot(
+    robot_models = add_robot(
         parser, RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
-    )
-    names = {plant.get_joint(i).name() for i in plant.GetJointIndices()}
+    ).models
+    names = _names(plant.get_joint(i) for i in plant.GetJointIndices())
     other = scenario.recorded_on
     if other is not None and set(other.joints) <= names and not set(block.joints) <= names:
         raise ModelError(
@@ -44,10 +47,17 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     parked = {name: value for name, value in block.parked.items() if name in names}
     robot = block.model_copy(update={"parked": parked})
     if block.tool is not None:
-        links = {plant.get_body(i).name() for i in plant.GetBodyIndices(instance)}
+        links = _names(
+            plant.get_body(i) for model in robot_models for i in plant.GetBodyIndices(model)
+        )
         known = {"table", *links, *(o.name for o in scenario.objects)}
         known |= {o.name for o in scenario.obstacles}
         touches = tuple(name for name in block.tool.touches if name in known)
         tool = block.tool.model_copy(update={"touches": touches})
         robot = robot.model_copy(update={"tool": tool})
     return scenario.model_copy(update={"robot": robot})
+
+
+def _names(parts: Iterable[Joint | RigidBody]) -> set[str]:
+    """What parts may be called: by their names, or with their model's."""
+    return {name for part in parts for name in (part.name(), scoped(part))}

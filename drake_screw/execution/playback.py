@@ -57,11 +57,11 @@ def recording_html(
         )
         root = station.context(execution.q[0], X_WO)
         context = station.plant.GetMyMutableContextFromRoot(root)
-        positions = station.parked.copy()
+        positions = station.plant.GetPositions(context)
         for t in np.arange(0.0, execution.t[-1], 1.0 / FRAMES):
             k = min(int(np.searchsorted(execution.t, t)), len(execution.t) - 1)
             positions[station.columns] = execution.q[k]
-            station.plant.SetPositions(context, station.robot, positions)
+            station.plant.SetPositions(context, positions)
             root.SetTime(began + t)
             station.diagram.ForcedPublish(root)
         ended = began + float(execution.t[-1]) + PAUSE

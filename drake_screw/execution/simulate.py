@@ -14,6 +14,7 @@ from drake_screw.execution.monitoring import failed
 from drake_screw.execution.report import Contact, ExecutionReport, make_report
 from drake_screw.execution.station import Station
 from drake_screw.execution.timing import TimedPlan
+from drake_screw.robot.names import shown_name
 from drake_screw.typing import Array
 
 PATIENCE = 1.0
@@ -82,7 +83,7 @@ class _Watch:
         results = self._results.Eval(plant.GetMyContextFromRoot(root))
         for i in range(results.num_point_pair_contacts()):
             info = results.point_pair_contact_info(i)
-            a, b = (plant.get_body(k).name() for k in (info.bodyA_index(), info.bodyB_index()))
+            a, b = (shown_name(plant.get_body(k)) for k in (info.bodyA_index(), info.bodyB_index()))
             self._touched((a, b), root.get_time(), float(np.linalg.norm(info.contact_force())))
         status = self._status.Eval(root)
         if status.ended:

@@ -22,11 +22,15 @@ from pydrake.multibody.plant import (
     MultibodyPlant,
     MultibodyPlantConfig,
 )
-from pydrake.multibody.tree import ModelInstanceIndex, PdControllerGains, RigidBody
+from pydrake.multibody.tree import (
+    JointActuator,
+    JointIndex,
+    ModelInstanceIndex,
+    PdControllerGains,
+    RigidBody,
+)
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 from pydrake.systems.primitives import (
-    Adder,
-    ConstantVectorSource,
     LogVectorOutput,
     MatrixGain,
     VectorLogSink,
@@ -34,6 +38,7 @@ from pydrake.systems.primitives import (
 
 from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
+from drake_screw.execution.wiring import drive, measured_state, resting
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.robot.tool import let_touch
@@ -58,11 +63,10 @@ class Station:
         diagram, plant, scene_graph: discrete in time, the robot's gravity compensated.
         arm: kinematics and limits, on a plant of its own.
         follower: executes plans.
-        robot: the robot's model instance.
         objects: the objects' bodies.
         measured, desired: logs of q and v (2n,) at every step of the plant.
-        parked: (N,) positions of the robot's N joints, with the arm's at 0.
-        columns: (n,) the arm's joints among the robot's N.
+        parked: (N,) the plant's positions, with the arm's joints at 0 and all others at rest.
+        columns: (n,) the arm's joints among them.
     """
 
     diagram: Diagram
@@ -70,7 +74,6 @@ class Station:
     scene_graph: SceneGraph
     arm: Arm
     follower: Follower
-    robot: ModelInstanceIndex
     objects: tuple[RigidBody, ...]
     measured: VectorLogSink
     desired: VectorLogSink
@@ -93,7 +96,7 @@ class Station:
         context = self.plant.GetMyMutableContextFromRoot(root)
         positions = self.parked.copy()
         positions[self.columns] = q
-        self.plant.SetPositions(context, self.robot, positions)
+        self.plant.SetPositions(context, positions)
         for body, X in zip(self.objects, np.asarray(X_WO, dtype=float), strict=True):
             self.plant.SetFreeBodyPose(context, body, RigidTransform(X))
             body.Lock(context)
@@ -128,34 +131,26 @@ def build_station(
     config = MultibodyPlantConfig(time_step=time_step, contact_model="point")
     plant, scene_graph = AddMultibodyPlant(config, builder)
     parser = Parser(plant)
-    _, instance, tool = add_robot(parser, robot)
+    added = add_robot(parser, robot)
     _, bodies = add_surroundings(plant, table, objects, obstacles)
-    _motorise(plant, instance)
-    plant.set_gravity_enabled(instance, False)
+    _motorise(plant, added.models)
+    for model in added.models:
+        plant.set_gravity_enabled(model, False)
     plant.Finalize()
-    _ignore_contacts_of_objects(plant, scene_graph, instance)
-    if robot.tool is not None and tool is not None:
-        let_touch(plant, scene_graph, tool, robot.tool.touches)
+    _ignore_contacts_of_objects(plant, scene_graph, added.instances)
+    if robot.tool is not None and added.tool is not None:
+        let_touch(plant, scene_graph, added.tool, robot.tool.touches)
     arm = _kinematics(robot)
     follower = builder.AddNamedSystem(
         "executor", ScrewPlanExecutor(arm) if follow_screws else JointPathSource(arm)
     )
-    columns, parked = _joints(plant, instance, arm)
-    N, n = len(parked), arm.n
-    pick = np.zeros((2 * n, 2 * N))
-    pick[np.arange(n), columns] = pick[n + np.arange(n), N + columns] = 1.0
-    rest = np.concatenate([parked, np.zeros(N)])
-    rest[columns] = 0.0
-    measure = builder.AddNamedSystem("arm_of_robot", MatrixGain(pick))
-    spread = builder.AddNamedSystem("robot_of_arm", MatrixGain(pick.T))
-    idle = builder.AddNamedSystem("idle_joints", ConstantVectorSource(rest))
-    command = builder.AddNamedSystem("joint_command", Adder(2, 2 * N))
-    builder.Connect(plant.get_state_output_port(instance), measure.get_input_port())
+    moved = added.arm()
+    parked = resting(plant, moved)
+    columns = np.array([joint.position_start() for joint in moved.joints])
+    measure = builder.AddNamedSystem("arm_of_robot", MatrixGain(measured_state(plant, moved)))
+    builder.Connect(plant.get_state_output_port(), measure.get_input_port())
     builder.Connect(measure.get_output_port(), follower.GetInputPort("measured_state"))
-    builder.Connect(follower.GetOutputPort("desired_state"), spread.get_input_port())
-    builder.Connect(spread.get_output_port(), command.get_input_port(0))
-    builder.Connect(idle.get_output_port(), command.get_input_port(1))
-    builder.Connect(command.get_output_port(), plant.get_desired_state_input_port(instance))
+    drive(builder, plant, added.models, moved, follower.GetOutputPort("desired_state"))
     builder.ExportInput(follower.GetInputPort("plan"), "plan")
     builder.ExportOutput(follower.GetOutputPort("status"), "status")
     builder.ExportOutput(follower.GetOutputPort("progress"), "progress")
@@ -170,36 +165,35 @@ def build_station(
     diagram = builder.Build()
     diagram.set_name("station")
     return Station(
-        diagram, plant, scene_graph, arm, follower, instance, bodies, measured, desired,
-        parked, columns,
+        diagram, plant, scene_graph, arm, follower, bodies, measured, desired, parked,
+        columns,
     )  # fmt: skip
 
 
-def _motorise(plant: MultibodyPlant, robot: ModelInstanceIndex) -> None:
+def _motorise(plant: MultibodyPlant, robot: Sequence[ModelInstanceIndex]) -> None:
     """Position control of every joint with one degree of freedom, within the model's efforts."""
-    driven = {}
+    driven: dict[JointIndex, JointActuator] = {}
     for index in plant.GetJointActuatorIndices():
         actuator = plant.get_joint_actuator(index)
-        driven[actuator.joint().index()] = actuator
-    for index in plant.GetJointIndices(robot):
-        joint = plant.get_joint(index)
+        driven.setdefault(actuator.joint().index(), actuator)
+    for joint in (plant.get_joint(i) for model in robot for i in plant.GetJointIndices(model)):
         if joint.num_velocities() != 1:
             continue
-        actuator = driven.get(index) or plant.AddJointActuator(joint.name(), joint)
+        actuator = driven.get(joint.index()) or plant.AddJointActuator(joint.name(), joint)
         effort = actuator.effort_limit()
         p = STIFFNESS * (effort if effort < MOST_EFFORT else UNRATED)
         actuator.set_controller_gains(PdControllerGains(p=p, d=DAMPING * p))
 
 
 def _ignore_contacts_of_objects(
-    plant: MultibodyPlant, scene_graph: SceneGraph, robot: ModelInstanceIndex
+    plant: MultibodyPlant, scene_graph: SceneGraph, robot: Sequence[ModelInstanceIndex]
 ) -> None:
     """Table, obstacles and objects may touch one another: nothing of it matters to the robot."""
     others = GeometrySet()
     for index in plant.GetBodyIndices(plant.world_body().model_instance()):
         others.Add(plant.GetCollisionGeometriesForBody(plant.get_body(index)))
     for i in range(plant.num_model_instances()):
-        if ModelInstanceIndex(i) != robot:
+        if ModelInstanceIndex(i) not in robot:
             for index in plant.GetBodyIndices(ModelInstanceIndex(i)):
                 others.Add(plant.GetCollisionGeometriesForBody(plant.get_body(index)))
     manager = scene_graph.collision_filter_manager()
@@ -209,23 +203,6 @@ def _ignore_contacts_of_objects(
 def _kinematics(robot: RobotConfig) -> Arm:
     """The arm on a plant of its own, for the executor."""
     plant = MultibodyPlant(0.0)
-    add_robot(Parser(plant), robot)
+    added = add_robot(Parser(plant), robot)
     plant.Finalize()
-    return Arm(plant, robot.joints, robot.frame, parked=robot.parked)
-
-
-def _joints(plant: MultibodyPlant, robot: ModelInstanceIndex, arm: Arm) -> tuple[Array, Array]:
-    """Where the arm's joints stand among the robot's, and where those rest."""
-    place = plant.GetPositionsFromArray(robot, np.arange(plant.num_positions(), dtype=float))
-    columns = [
-        int(np.flatnonzero(place == plant.GetJointByName(name, robot).position_start())[0])
-        for name in arm.joint_names
-    ]
-    resting = arm.full_positions(np.zeros(arm.n))
-    parked = np.zeros(len(place))
-    for index in plant.GetJointIndices(robot):
-        joint = plant.get_joint(index)
-        if joint.num_positions() == 1:
-            own = arm.plant.GetJointByName(joint.name()).position_start()
-            parked[place == joint.position_start()] = resting[own]
-    return np.array(columns), parked
+    return added.arm()

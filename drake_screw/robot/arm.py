@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import Frame, FrameIndex, JacobianWrtVariable, Joint
+from pydrake.multibody.tree import JacobianWrtVariable
 
-from drake_screw.errors import ModelError, unknown
+from drake_screw.errors import ModelError
+from drake_screw.robot.names import Instances, find_frame, find_joint
 from drake_screw.robot.screw_chain import ScrewChain
 from drake_screw.screws import shift
 from drake_screw.typing import Array
@@ -18,13 +19,16 @@ from drake_screw.typing import Array
 class Arm:
     """Kinematics and limits of some revolute and prismatic joints of a finalized plant.
 
-    `owner` keeps alive what owns the plant: a plant does not keep its diagram.
+    `owner` keeps alive what owns the plant: a plant does not keep its diagram. `joints` are the
+    plant's own, in the arm's order.
 
     Args:
         plant: finalized; it stays the source of truth for everything here.
         joint_names: the arm's n joints, base to end effector.
         end_effector: name of the frame E that follows the screws.
         parked: positions of other joints (rad, m) by name; the rest keep the plant's defaults.
+        robot: the models that names are looked up in; all of the plant's if None. A name that
+            several of them have is given with its model's, as "left::hand".
 
     Raises:
         ModelError: a name the plant does not have (the message lists those it has), a joint that
@@ -39,6 +43,7 @@ class Arm:
         end_effector: str,
         *,
         parked: Mapping[str, float] | None = None,
+        robot: Instances | None = None,
     ) -> None:
         self.plant = plant
         self.owner: object = None
@@ -46,8 +51,10 @@ class Arm:
         self.end_effector = end_effector
         self._context = plant.CreateDefaultContext()
         self._W = plant.world_frame()
-        self._E = find_frame(plant, end_effector)
-        joints = [_joint(plant, name) for name in self.joint_names]
+        self._robot = robot
+        self._E = find_frame(plant, end_effector, robot)
+        joints = [find_joint(plant, name, robot) for name in self.joint_names]
+        self.joints = tuple(joints)
         for joint in joints:
             if joint.type_name() not in ("revolute", "prismatic"):
                 raise ModelError(
@@ -61,7 +68,7 @@ class Arm:
                 remedy="List the joints from the base to the end effector, each once.",
             )
         for name, value in (parked or {}).items():
-            joint = _joint(plant, name)
+            joint = find_joint(plant, name, robot)
             if joint.num_positions() != 1:
                 raise ModelError(f"joint '{name}' cannot be parked: it does not have one position")
             plant.SetPositions(
@@ -94,8 +101,7 @@ class Arm:
     @property
     def units(self) -> tuple[str, ...]:
         """The unit of each joint's position, "rad" or "m"."""
-        kinds = (self.plant.GetJointByName(name).type_name() for name in self.joint_names)
-        return tuple("rad" if kind == "revolute" else "m" for kind in kinds)
+        return tuple("rad" if joint.type_name() == "revolute" else "m" for joint in self.joints)
 
     def full_positions(self, q: ArrayLike) -> Array:
         """Positions of the whole plant; q (..., n) rad or m to (..., plant.num_positions())."""
@@ -129,7 +135,7 @@ class Arm:
         Raises:
             ModelError: there is no such frame, or it moves against the end effector.
         """
-        F = find_frame(self.plant, frame)
+        F = find_frame(self.plant, frame, self._robot)
         if F.body() not in self.plant.GetBodiesWeldedTo(self._E.body()):
             raise ModelError(
                 f"frame '{frame}' is not fixed to the end effector '{self.end_effector}'",
@@ -167,38 +173,3 @@ def _with(q: Array, index: int, value: float) -> Array:
     q = q.copy()
     q[index] = value
     return q
-
-
-def _joint(plant: MultibodyPlant, name: str) -> Joint:
-    joints = {plant.get_joint(i).name(): plant.get_joint(i) for i in plant.GetJointIndices()}
-    if name not in joints:
-        movable = [n for n, joint in joints.items() if joint.num_positions() == 1]
-        message, remedy = unknown("joint", name, "the robot model", movable)
-        raise ModelError(message, remedy=remedy)
-    return joints[name]
-
-
-def find_frame(plant: MultibodyPlant, name: str) -> Frame:
-    """The frame of that name.
-
-    Raises:
-        ModelError: there is none, or more than one.
-    """
-    frames = [plant.get_frame(FrameIndex(i)) for i in range(plant.num_frames())]
-    matches = [frame for frame in frames if frame.name() == name]
-    if len(matches) == 1:
-        return matches[0]
-    message, remedy = unknown("frame", name, "the robot model", _public(frames))
-    if matches:
-        message = f"{len(matches)} frames are called '{name}'"
-    raise ModelError(message, remedy=remedy)
-
-
-def _public(frames: Sequence[Frame]) -> list[str]:
-    """Names people gave: not the world, nor the frames Drake makes at each end of a joint."""
-    names = [frame.name() for frame in frames]
-    return [
-        n
-        for n in names
-        if n != "world" and not n.startswith("_") and not n.endswith(("_parent", "_child"))
-    ]

@@ -14,11 +14,14 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import FixedOffsetFrame, ModelInstanceIndex, RigidBody, SpatialInertia
 
-from drake_screw.errors import ModelError, unknown
+from drake_screw.errors import ModelError
 from drake_screw.resources import MODEL_SUFFIXES, find_resource
-from drake_screw.robot.arm import find_frame
+from drake_screw.robot.arm import Arm
+from drake_screw.robot.base import fix_base, set_defaults, without_furniture
+from drake_screw.robot.directives import model_files
+from drake_screw.robot.mimic import follow, mimics_in
 from drake_screw.robot.model_text import check_collision_shapes
-from drake_screw.robot.names import check_apart
+from drake_screw.robot.names import check_apart, find_frame
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
 from drake_screw.robot.shapes import register
 from drake_screw.robot.tool import ToolConfig, add_tool
@@ -72,55 +75,95 @@ class ObjectConfig:
 
 
 class RobotInPlant(NamedTuple):
-    """A robot that was added to a plant: its model's file, its instance, and the body it holds."""
+    """A robot that was added to a plant.
 
+    Attributes:
+        config: what it is.
+        plant: that it was added to.
+        file: of its model.
+        models: all models that the file adds; names are looked up in these.
+        instances: those that are the robot. A model without joints that stands by itself, a table
+            that directives add beside an arm, is none of it.
+        tool: the body of what it holds, if that has a shape.
+        held: names of its joints that were replaced by welds.
+    """
+
+    config: RobotConfig
+    plant: MultibodyPlant
     file: Path
-    instance: ModelInstanceIndex
+    models: tuple[ModelInstanceIndex, ...]
+    instances: tuple[ModelInstanceIndex, ...]
     tool: RigidBody | None
+    held: tuple[str, ...]
+
+    def arm(self) -> Arm:
+        """The arm, once the plant is finalized.
+
+        Raises:
+            ModelError: as `Arm` does.
+        """
+        parked = {k: v for k, v in self.config.parked.items() if k not in self.held}
+        config = self.config
+        return Arm(self.plant, config.joints, config.frame, parked=parked, robot=self.models)
 
 
 def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
-    """Read the robot's model into a plant and fix its base to the world where it is free.
+    """Read the robot's model into a plant and fix it so that its base is at the world's origin.
 
-    What it holds becomes a body of the same model instance.
+    This is the one way in for a robot, whoever wants it. What it holds becomes a body of its first
+    model. Parked joints are at rest by default, with those that mimic them.
 
     Raises:
-        ModelError: the model or the tool's mesh cannot be read, the model lacks a name, or has a
-            collision shape that Drake would not take as it is.
+        ModelError: the model or the tool's mesh cannot be read, the model lacks a name, has a
+            collision shape that Drake would not take as it is, or cannot be fixed as wanted.
     """
     plant = parser.plant()
     file = find_resource("models", robot.model, MODEL_SUFFIXES)
-    check_collision_shapes(file)
+    files = model_files(file, parser.package_map())
+    for _, one in files:
+        check_collision_shapes(one)
+    models = _read(parser, file)
+    mimics = tuple(mimic for name, one in files for mimic in mimics_in(one, name))
     try:
-        instance = parser.AddModels(str(file))[0]
+        set_defaults(plant, models, robot.parked)
+        follow(plant, models, mimics, joints=robot.joints, parked=robot.parked)
+        held = fix_base(plant, models, robot.base, robot.joints, model=file.name.split(".")[0])
+        instances = without_furniture(plant, models)
+        if robot.end_effector_rotation is not None:
+            _turn_end_effector(plant, models, robot)
+    except ModelError as error:
+        raise ModelError(error.message, remedy=error.remedy, file=error.file or file) from error
+    tool = None if robot.tool is None else add_tool(plant, models, robot.tool)
+    return RobotInPlant(robot, plant, file, models, instances, tool, held)
+
+
+def _read(parser: Parser, file: Path) -> tuple[ModelInstanceIndex, ...]:
+    try:
+        models = tuple(parser.AddModels(str(file)))
     except (RuntimeError, ValueError, SystemExit) as error:
         raise ModelError(f"Drake cannot read this model: {error}", file=file) from error
-    names = [plant.get_body(i).name() for i in plant.GetBodyIndices(instance)]
-    if robot.base not in names:
-        message, remedy = unknown("link", robot.base, f"model '{file.stem}'", names)
-        raise ModelError(message, remedy=remedy, file=file)
-    welded = {
-        plant.get_joint(i).child_body().name()
-        for i in plant.GetJointIndices(instance)
-        if plant.get_joint(i).parent_body().name() == "world"
-    }
-    if robot.base not in welded:
-        plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(robot.base, instance))
-    if robot.end_effector_rotation is not None:
-        _turn_end_effector(plant, robot, file)
-    tool = None if robot.tool is None else add_tool(plant, instance, robot.tool)
-    return RobotInPlant(file, instance, tool)
+    if not models:
+        raise ModelError(
+            "there is no model in this file",
+            remedy="Directives name the robot's models, each in an add_model.",
+            file=file,
+        )
+    return models
 
 
-def _turn_end_effector(plant: MultibodyPlant, robot: RobotConfig, file: Path) -> None:
+def _turn_end_effector(
+    plant: MultibodyPlant, models: Sequence[ModelInstanceIndex], robot: RobotConfig
+) -> None:
     """Add the frame `robot.frame`, turned against the end effector's by roll, pitch and yaw."""
-    check_apart(plant, "the turned end effector", [robot.frame])
-    try:
-        named = find_frame(plant, robot.end_effector)
-    except ModelError as error:
-        raise ModelError(error.message, remedy=error.remedy, file=file) from error
+    named = find_frame(plant, robot.end_effector, models)
     X_NE = RigidTransform(RollPitchYaw(robot.end_effector_rotation), [0.0, 0.0, 0.0])
-    plant.AddFrame(FixedOffsetFrame(robot.frame, named, X_NE))
+    name = turned_frame(named.name())
+    if plant.HasFrameNamed(name, named.model_instance()):
+        raise ModelError(
+            f"the model has a frame '{name}', as the turned end effector would be called",
+            remedy="Take that frame as the end effector, without a rotation.",
+        )
+    plant.AddFrame(FixedOffsetFrame(name, named, X_NE))
 
 
 def add_surroundings(

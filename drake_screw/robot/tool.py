@@ -10,11 +10,10 @@ import numpy as np
 from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, SceneGraph
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex, RigidBody, SpatialInertia
+from pydrake.multibody.tree import BodyIndex, FrameIndex, RigidBody, SpatialInertia
 
 from drake_screw.errors import ModelError, unknown
-from drake_screw.robot.arm import find_frame
-from drake_screw.robot.names import taken_names
+from drake_screw.robot.names import Instances, called, find_frame, scoped
 from drake_screw.robot.shapes import PlacedShape, register
 
 STEEL = np.array([0.36, 0.52, 0.70, 1.0])
@@ -44,24 +43,24 @@ class ToolConfig:
         return RigidTransform(RollPitchYaw(self.rpy), self.xyz)
 
 
-def add_tool(plant: MultibodyPlant, robot: ModelInstanceIndex, tool: ToolConfig) -> RigidBody:
+def add_tool(plant: MultibodyPlant, robot: Instances, tool: ToolConfig) -> RigidBody:
     """Add a tool to a robot's model as a body without mass, with a visual and a collision shape.
 
-    Its name is "tool", or the like where the model has something of that name. Drake lets it
-    touch the links that are rigidly fixed to it.
+    It belongs to the model that has the frame. Its name is "tool", or the like where the robot has
+    something of that name. Drake lets it touch the links that are rigidly fixed to it.
 
     Raises:
         ModelError: the plant does not have the frame, or the mesh cannot be read.
     """
-    frame = find_frame(plant, tool.frame)
+    frame = find_frame(plant, tool.frame, robot)
     try:
         shape = tool.shape.drake()
     except ModelError as error:
         message = f"robot.tool.shape: {error.message}"
         raise ModelError(message, remedy=error.remedy, file=error.file) from error
-    taken = taken_names(plant)
+    taken = {plant.get_frame(FrameIndex(i)).name() for i in range(plant.num_frames())}
     free = (name for n in count(2) for name in ("tool", f"tool_{n}") if name not in taken)
-    body = plant.AddRigidBody(next(free), robot, SpatialInertia.Zero())
+    body = plant.AddRigidBody(next(free), frame.model_instance(), SpatialInertia.Zero())
     plant.WeldFrames(frame, body.body_frame(), tool.X_FT)
     register(plant, body, shape, tool.shape.X_FG, STEEL)
     return body
@@ -73,19 +72,21 @@ def let_touch(
     """Let a tool touch bodies of a finalized plant by their names.
 
     Raises:
-        ModelError: there is no such body.
+        ModelError: there is no such body, or more than one.
     """
-    others: dict[str, list[RigidBody]] = {}
-    for i in range(1, plant.num_bodies()):
-        other = plant.get_body(BodyIndex(i))
-        if other.index() != body.index():
-            others.setdefault(other.name(), []).append(other)
+    bodies = [plant.get_body(BodyIndex(i)) for i in range(1, plant.num_bodies())]
+    others = [other for other in bodies if other.index() != body.index()]
     mine = GeometrySet(plant.GetCollisionGeometriesForBody(body))
     manager = scene_graph.collision_filter_manager()
     for name in names:
-        if name not in others:
-            message, remedy = unknown("part", name, "the workcell", list(others))
+        matches = [other for other in others if called(other, name)]
+        if not matches:
+            message, remedy = unknown("part", name, "the workcell", [o.name() for o in others])
             raise ModelError(f"robot.tool.touches: {message}", remedy=remedy)
-        for other in others[name]:
-            theirs = GeometrySet(plant.GetCollisionGeometriesForBody(other))
-            manager.Apply(CollisionFilterDeclaration().ExcludeBetween(mine, theirs))
+        if len(matches) > 1:
+            raise ModelError(
+                f"robot.tool.touches: {len(matches)} parts of the workcell are called '{name}'",
+                remedy=f"Name one with its model: {', '.join(map(scoped, matches))}",
+            )
+        theirs = GeometrySet(plant.GetCollisionGeometriesForBody(matches[0]))
+        manager.Apply(CollisionFilterDeclaration().ExcludeBetween(mine, theirs))

@@ -22,6 +22,7 @@ from pydrake.planning import (
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.arm import Arm
+from drake_screw.robot.names import shown_name
 from drake_screw.robot.obstacles import ObstacleConfig
 from drake_screw.robot.parts import (
     ObjectConfig,
@@ -50,7 +51,7 @@ class Workcell:
         arm: the arm that is planned for.
         start: (n,) rad, its start configuration.
         objects: the objects' bodies.
-        robot: the model instance of the robot, and of what it holds.
+        robot: the model instances of the robot, and of what it holds.
         model_file: where the robot was read from.
         checker: looks at collisions.
         obstacles: the obstacles' bodies.
@@ -63,7 +64,7 @@ class Workcell:
     arm: Arm
     start: Array
     objects: tuple[RigidBody, ...]
-    robot: ModelInstanceIndex
+    robot: tuple[ModelInstanceIndex, ...]
     model_file: Path
     checker: SceneGraphCollisionChecker
     obstacles: tuple[RigidBody, ...] = ()
@@ -104,11 +105,20 @@ class Workcell:
         )
 
     def touching(self, pair: int) -> tuple[str, str]:
-        """Names of the two bodies of one of `pairs`, the robot's first."""
+        """Names of the two bodies of one of `pairs`, as `name` has them, the robot's first."""
         a, b = self.pairs[pair]
         if not self.checker.IsPartOfRobot(a):
             a, b = b, a
-        return self.plant.get_body(a).name(), self.plant.get_body(b).name()
+        return self.name(a), self.name(b)
+
+    def name(self, body: BodyIndex) -> str:
+        """A body's name as people see it: with its model's where two bodies share it."""
+        return self._names[int(body)]
+
+    @cached_property
+    def _names(self) -> tuple[str, ...]:
+        bodies = map(BodyIndex, range(self.plant.num_bodies()))
+        return tuple(shown_name(self.plant.get_body(i)) for i in bodies)
 
     def keeping(self, clearance: float) -> SceneGraphCollisionChecker:
         """A checker for which nearer than a clearance in m is a collision."""
@@ -152,7 +162,7 @@ class Workcell:
         distances = np.asarray(found.distances())
         robot, other = found.robot_indices(), found.other_indices()
         names = [
-            (self.plant.get_body(robot[i]).name(), self.plant.get_body(other[i]).name())
+            (self.name(robot[i]), self.name(other[i]))
             for i in np.argsort(distances, kind="stable").tolist()
             if distances[i] < clearance
         ]
@@ -174,27 +184,30 @@ def build_workcell(
     """
     builder = RobotDiagramBuilder(time_step=0.0)
     plant: MultibodyPlant = builder.plant()
-    model_file, instance, tool = add_robot(builder.parser(), robot)
+    added = add_robot(builder.parser(), robot)
     fixed, bodies = add_surroundings(plant, table, objects, obstacles)
     plant.Finalize()
-    arm = Arm(plant, robot.joints, robot.frame, parked=robot.parked)
+    arm = added.arm()
     if len(robot.start) != arm.n:
         raise ModelError(
             f"the start configuration has {len(robot.start)} angles for {arm.n} joints"
         )
     scene_graph = builder.scene_graph()
-    if robot.tool is not None and tool is not None:
+    if robot.tool is not None and added.tool is not None:
         arm.held(robot.tool.frame)
-        let_touch(plant, scene_graph, tool, robot.tool.touches)
+        let_touch(plant, scene_graph, added.tool, robot.tool.touches)
     diagram = builder.Build()
     arm.owner = diagram
     checker = SceneGraphCollisionChecker(
-        CollisionCheckerParams(model=diagram, robot_model_instances=[instance], edge_step_size=0.05)
+        CollisionCheckerParams(
+            model=diagram, robot_model_instances=list(added.instances), edge_step_size=0.05
+        )
     )
     start = np.array(robot.start, dtype=float)
     workcell = Workcell(
-        diagram, plant, scene_graph, arm, start, bodies, instance, model_file, checker, fixed, tool
-    )
+        diagram, plant, scene_graph, arm, start, bodies, added.instances, added.file, checker,
+        fixed, added.tool,
+    )  # fmt: skip
     _check_planes(workcell)
     return workcell
 
@@ -212,7 +225,7 @@ def _check_planes(workcell: Workcell) -> None:
             continue
         for other in shapes(b):
             if not isinstance(other, Sphere):
-                plane, beside = plant.get_body(a).name(), plant.get_body(b).name()
+                plane, beside = workcell.name(a), workcell.name(b)
                 raise ModelError(
                     f"a collision shape of link '{plane}' is a plane, and Drake cannot tell "
                     f"whether it touches the {type(other).__name__.lower()} of '{beside}'",

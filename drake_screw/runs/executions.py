@@ -145,11 +145,11 @@ def _check_masses(setup: Setup) -> None:
     context = plant.CreateDefaultContext()
     plant.SetPositions(context, arm.full_positions(setup.workcell.start))
     M = plant.CalcMassMatrix(context)
-    for name in arm.joint_names:
-        place = plant.GetJointByName(name).velocity_start()
+    for joint in arm.joints:
+        place = joint.velocity_start()
         if M[place, place] <= 0.0:
             raise ModelError(
-                f"joint '{name}' cannot be driven: what it moves has no inertia",
+                f"joint '{joint.name()}' cannot be driven: what it moves has no inertia",
                 remedy="Give the links an <inertial> with mass and inertia; planning does without.",
                 file=setup.workcell.model_file,
             )

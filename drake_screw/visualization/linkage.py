@@ -33,10 +33,10 @@ class Linkage:
         self.arm: Arm = workcell.arm
         plant, graph = workcell.plant, workcell.scene_graph
         self._graph: SceneGraph = graph
-        self._plant = plant
+        self._plant, self._named = plant, workcell.name
         self._context = plant.CreateDefaultContext()
         inspector = graph.model_inspector()
-        first = plant.GetJointByName(self.arm.joint_names[0]).index()
+        first = self.arm.joints[0].index()
         moved = [
             (plant.get_body(i), plant.GetBodyFrameIdOrThrow(i))
             for i in plant.GetBodiesKinematicallyAffectedBy([first])
@@ -63,7 +63,7 @@ class Linkage:
 
         The frame is fixed to the link that carries the joint: it does not turn with it.
         """
-        item = self._plant.GetJointByName(self.arm.joint_names[joint])
+        item = self.arm.joints[joint]
         revolute = item.type_name() == "revolute"
         z = item.revolute_axis() if revolute else item.translation_axis()
         x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
@@ -94,15 +94,15 @@ class Linkage:
         color: str,
         opacity: float,
     ) -> None:
-        """Draw bodies of the workcell once more by their names, whatever they belong to.
+        """Draw bodies of the workcell once more by their names, as `Workcell.name` has them.
 
-        Where several have a name, each is drawn. `positions` are those of the whole plant.
+        `positions` are those of the whole plant.
         """
         plant, inspector = self._plant, self._graph.model_inspector()
         plant.SetPositions(self._context, positions)
         wanted = set(names)
         for body in (plant.get_body(BodyIndex(i)) for i in range(1, plant.num_bodies())):
-            if body.name() not in wanted:
+            if self._named(body.index()) not in wanted:
                 continue
             frame = plant.GetBodyFrameIdOrThrow(body.index())
             X_WB = plant.EvalBodyPoseInWorld(self._context, body).GetAsMatrix4()

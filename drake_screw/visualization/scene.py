@@ -21,7 +21,7 @@ from pydrake.planning import RobotDiagramBuilder
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause
-from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.tasks import Regions, WorkArea
 from drake_screw.typing import Array
@@ -257,10 +257,10 @@ def _draw_workcell(
 ) -> None:
     builder = RobotDiagramBuilder(time_step=0.0)
     plant = builder.plant()
-    add_robot(builder.parser(), robot)
+    added = add_robot(builder.parser(), robot)
     add_surroundings(plant, table, obstacles=obstacles)
     plant.Finalize()
-    arm = Arm(plant, robot.joints, robot.frame, parked=robot.parked)
+    arm = added.arm()
     parameters = MeshcatVisualizerParams(prefix="/workcell")
     MeshcatVisualizer.AddToBuilder(builder.builder(), builder.scene_graph(), meshcat, parameters)
     diagram = builder.Build()

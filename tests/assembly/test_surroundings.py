@@ -121,8 +121,8 @@ def test_a_tool_that_touches_a_link_at_the_start_is_refused_with_the_remedy(tmp_
 
 
 def test_names_and_meshes_are_told_with_their_file(tmp_path: Path) -> None:
-    scenario = scenario_in(tmp_path, "{name: p1, sphere: {radius: 0.1}, xyz: [3, 0, 0]}")
-    with pytest.raises(ModelError, match="the name 'p1' of an obstacle is taken") as caught:
+    scenario = scenario_in(tmp_path, "{name: small, sphere: {radius: 0.1}, xyz: [3, 0, 0]}")
+    with pytest.raises(ModelError, match="the name 'small' of an obstacle is taken") as caught:
         _ = Setup(scenario).workcell
     assert caught.value.file == scenario.source
     with pytest.raises(ModelError, match="obstacle 'jug': there is no such mesh") as caught:

@@ -113,14 +113,23 @@ def test_other_shapes_are_taken(tmp_path: Path) -> None:
 
 
 def test_what_drake_ends_the_program_for_is_an_error(tmp_path: Path) -> None:
-    """Through an included model, which is not looked at beforehand."""
-    urdf_with(tmp_path, '<box size="0 1 1"/>')
-    outer = tmp_path / "outer.dmd.yaml"
-    outer.write_text(
-        f"directives:\n- add_model:\n    name: small\n    file: file://{tmp_path}/small.urdf\n"
+    """Of MJCF, which is not looked at beforehand."""
+    file = tmp_path / "no_mass.xml"
+    file.write_text(
+        "<mujoco model='small'><worldbody><body name='base'>"
+        "<inertial pos='0 0 0' mass='0' diaginertia='0 0 0'/></body></worldbody></mujoco>"
     )
-    with pytest.raises(ModelError, match=r"outer.dmd.yaml: Drake cannot read this model: .*Box"):
+    with pytest.raises(ModelError, match=r"no_mass.xml: Drake cannot read this model: .*mass > 0"):
+        cell_of(file)
+
+
+def test_models_that_directives_add_are_looked_at(tmp_path: Path) -> None:
+    small = urdf_with(tmp_path, '<box size="0 1 1"/>')
+    outer = tmp_path / "outer.dmd.yaml"
+    outer.write_text(f"directives:\n- add_model: {{name: small, file: file://{small}}}\n")
+    with pytest.raises(ModelError, match="is a box with size 0 1 1") as caught:
         cell_of(outer)
+    assert caught.value.file == small
 
 
 @pytest.mark.parametrize("link", ["base", "p3_link"])

@@ -43,8 +43,8 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
     context = plant.CreateDefaultContext()
     plant.SetPositions(context, arm.full_positions(np.zeros(arm.n)))
     last = {}
-    for i, name in enumerate(arm.joint_names):
-        for body in plant.GetBodiesKinematicallyAffectedBy([plant.GetJointByName(name).index()]):
+    for i, arm_joint in enumerate(arm.joints):
+        for body in plant.GetBodiesKinematicallyAffectedBy([arm_joint.index()]):
             last[body] = i
     object_of = {body.index(): i for i, body in enumerate(workcell.objects)}
     cores, X_WG, joint, objects, bodies, ids = [], [], [], [], [], []
@@ -59,14 +59,14 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
             core = core_of(shape)
         except QhullError as error:
             raise ModelError(
-                f"this mesh is flat, and a collision shape of '{body.name()}'",
+                f"this mesh is flat, and a collision shape of '{workcell.name(body.index())}'",
                 remedy="Give it some thickness, or take a thin box in its place.",
                 file=shape.source().path(),
             ) from error
         if core is None:
             raise ModelError(
-                f"link '{body.name()}' has a collision shape of a kind that is not supported: "
-                f"{shape}",
+                f"link '{workcell.name(body.index())}' has a collision shape of a kind that is "
+                f"not supported: {shape}",
                 remedy="Give it spheres, capsules, cylinders, boxes, ellipsoids or meshes.",
                 file=workcell.model_file,
             )
