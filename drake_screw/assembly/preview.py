@@ -20,7 +20,7 @@ from drake_screw.assembly.preview_parts import (
     PreviewedTool,
     PreviewedTree,
 )
-from drake_screw.assembly.sanity import Covered, covered_by_obstacles
+from drake_screw.assembly.sanity import Covered, covered_by_obstacles, looks_aside
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import CertifyOrSplit
 from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
@@ -65,6 +65,7 @@ class Preview:
         samples: instances of a round.
         plans_per_second: here, measured with one demonstration; None if there is none to begin
             with.
+        looks_aside: what is to be said of an end effector that does not point out of the hand.
     """
 
     scenario: str
@@ -96,6 +97,7 @@ class Preview:
     lacks_ompl: bool
     samples: PreviewedSamples
     plans_per_second: float | None
+    looks_aside: str | None = None
 
     def __str__(self) -> str:
         return "\n".join(f"{name:<10} {text}" for name, text in self._lines())
@@ -135,6 +137,8 @@ class Preview:
                 f"the farthest corner of the work area is {self.farthest_corner:.2f} m from the "
                 "shoulder; only an object held long reaches there",
             )
+        if self.looks_aside is not None:
+            yield "note", self.looks_aside
         yield from (("note", str(item)) for item in self.covered)
         if self.lacks_ompl:
             yield "note", connection.ABSENT
@@ -204,6 +208,7 @@ def preview(scenario: Scenario) -> Preview:
         lacks_ompl=setup.leads_around is False,
         samples=_samples(setup),
         plans_per_second=_plans_per_second(setup),
+        looks_aside=looks_aside(setup.workcell),
     )
 
 

@@ -27,8 +27,8 @@ def init(
         str,
         typer.Argument(
             metavar="ROBOT",
-            help="A robot model's file (URDF, SDF, MJCF or model directives), the name of a shipped "
-            "model, or that of a shipped scenario, to be copied.",
+            help="A robot model's file (URDF, SDF, MJCF or model directives), the name of a "
+            "shipped model, or that of a shipped scenario, to be copied.",
         ),
     ] = "pouring",
     output: Annotated[

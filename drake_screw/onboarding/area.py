@@ -132,12 +132,12 @@ def farthest_corner(area: Rectangle, shoulder: Array) -> tuple[float, float]:
 
 
 def _grid(interval: tuple[float, float], spacing: float) -> Array:
-    count = max(int(round((interval[1] - interval[0]) / spacing)), 1)
+    count = max(round((interval[1] - interval[0]) / spacing), 1)
     return np.linspace(*interval, count + 1)
 
 
 def _without_corner(area: Rectangle, corner: tuple[float, float]) -> Rectangle:
-    """Both sides at a corner moved in; the opposite side in y, too, so that it stays in the middle."""
+    """Both sides at a corner moved in, and the opposite one in y, too, so that it stays put."""
     x0, x1 = area.x
     x0, x1 = (x0, x1 - SHRUNK) if corner[0] == x1 else (x0 + SHRUNK, x1)
     return Rectangle((x0, x1), (area.y[0] + SHRUNK, area.y[1] - SHRUNK))
@@ -145,6 +145,4 @@ def _without_corner(area: Rectangle, corner: tuple[float, float]) -> Rectangle:
 
 def _shrunk(area: Rectangle) -> Rectangle:
     half = SHRUNK / 2.0
-    return Rectangle(
-        (area.x[0] + half, area.x[1] - half), (area.y[0] + half, area.y[1] - half)
-    )
+    return Rectangle((area.x[0] + half, area.x[1] - half), (area.y[0] + half, area.y[1] - half))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os.path
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
@@ -13,6 +13,7 @@ from pydrake.multibody.tree import BodyIndex, Joint, JointIndex
 
 from drake_screw.errors import ModelError, ScenarioError, suggestion
 from drake_screw.onboarding.reading import Robot
+from drake_screw.robot.names import called, scoped, shown_name
 
 FULL, MOST = 6, 7
 """Joints of an arm: from so many on the hand can be led anywhere; more than MOST are unusual."""
@@ -142,7 +143,12 @@ class _Tree:
         return self.plant.get_joint(index)
 
     def name(self, index: JointIndex) -> str:
-        return str(self.plant.get_joint(index).name())
+        """Plain where that tells it from all others, else with its model's before it."""
+        joint = self.plant.get_joint(index)
+        alike = [
+            i for i in self.plant.GetJointIndices() if called(self.plant.get_joint(i), joint.name())
+        ]
+        return str(joint.name()) if len(alike) == 1 else scoped(joint)
 
     def _way(self, index: JointIndex) -> tuple[JointIndex, ...]:
         """Moving joints from the root to this one."""
@@ -164,7 +170,7 @@ class _Tree:
             if parent.index() == world:
                 break
             body = parent
-        return str(body.name())
+        return shown_name(body)
 
     def paths(self) -> list[tuple[JointIndex, ...]]:
         """From the root to each end."""
@@ -203,11 +209,11 @@ def _arm(tree: _Tree, chain: tuple[JointIndex, ...]) -> FoundArm:
     joints = tuple(map(tree.name, chain[first:]))
     last = tree.joint(chain[-1])
     return FoundArm(
-        name=_name(joints) or str(last.child_body().name()),
+        name=_name(joints) or shown_name(last.child_body()),
         joints=joints,
         held=tuple(map(tree.name, chain[:first])),
         base=tree.root(chain[0]),
-        last_link=str(last.child_body().name()),
+        last_link=shown_name(last.child_body()),
         fingers=tuple(map(tree.name, tree.behind(chain[-1]))),
     )
 
@@ -220,7 +226,7 @@ def _belongs_to_the_body(tree: _Tree, index: JointIndex) -> bool:
 
 
 def _name(joints: Sequence[str]) -> str:
-    shared = os.path.commonprefix(joints)
+    shared = "".join(c[0] for c in takewhile(lambda c: len(set(c)) == 1, zip(*joints)))
     return re.sub(r"([_-]?(joint|arm_joint|j|a|actuator))?[_\-\d]*$", "", shared)
 
 

@@ -213,9 +213,7 @@ def _likely(reach: ReachMap, chain: ScrewChain) -> Rectangle | None:
     return found
 
 
-def _trial(
-    bare: RobotConfig, start: Start, table: TableConfig, top: float, task: str
-) -> Trial:
+def _trial(bare: RobotConfig, start: Start, table: TableConfig, top: float, task: str) -> Trial:
     workcell = build_workcell(replace(bare, start=start.q), table=table, objects=[BOWL])
     return Trial(workcell, task, top)
 
@@ -263,9 +261,7 @@ def _size(seen: Survey, chain: ScrewChain) -> float:
 
 
 def _largest(seen: Survey, chain: ScrewChain) -> Rectangle | None:
-    return best_rectangle(
-        seen.x, seen.y, seen.good, most=LARGEST, middle=_middle(chain)
-    )
+    return best_rectangle(seen.x, seen.y, seen.good, most=LARGEST, middle=_middle(chain))
 
 
 def _no_area(robot: Robot, arm: FoundArm, top: float, why: str) -> ModelError:
@@ -276,4 +272,3 @@ def _no_area(robot: Robot, arm: FoundArm, top: float, why: str) -> ModelError:
         "scenario by hand, see docs/another_robot.md.",
         file=robot.file,
     )
-

@@ -11,6 +11,7 @@ from pydrake.systems.framework import Context
 
 from drake_screw.onboarding.arms import FoundArm
 from drake_screw.onboarding.reading import Robot
+from drake_screw.robot.names import find_joint, scoped
 
 WIDE_OPEN = 0.8
 """Part of the way from its default to its end that a finger is opened."""
@@ -33,10 +34,12 @@ def parked(robot: Robot, arm: FoundArm, others: Sequence[FoundArm]) -> dict[str,
     """
     plant = robot.plant
     rest: dict[str, float] = {}
+    names = [plant.get_joint(i).name() for i in plant.GetJointIndices()]
     for index in plant.GetJointIndices():
         joint = plant.get_joint(index)
-        if joint.num_positions() == 1 and joint.name() not in arm.joints:
-            rest[joint.name()] = _within(joint, float(joint.default_positions()[0]))
+        name = joint.name() if names.count(joint.name()) == 1 else scoped(joint)
+        if joint.num_positions() == 1 and name not in arm.joints and name not in robot.mimics:
+            rest[name] = _within(joint, float(joint.default_positions()[0]))
     drives = [name for name in arm.fingers if name not in robot.mimics]
     if len(drives) <= DRIVES:
         rest |= _opened(robot, arm, rest)
@@ -54,9 +57,9 @@ def _within(joint: Joint, value: float) -> float:
 def _opened(robot: Robot, arm: FoundArm, rest: dict[str, float]) -> dict[str, float]:
     """Fingers, each moved to where what it carries is farthest from the hand's axis."""
     plant, opened = robot.plant, {}
-    last = plant.GetJointByName(arm.joints[-1])
-    for name in arm.fingers:
-        joint = plant.GetJointByName(name)
+    last = find_joint(plant, arm.joints[-1])
+    for name in (name for name in arm.fingers if name not in robot.mimics):
+        joint = find_joint(plant, name)
         lower, upper = joint.position_lower_limits()[0], joint.position_upper_limits()[0]
         if not np.isfinite([lower, upper]).all():
             continue
@@ -89,7 +92,7 @@ def _put(plant: MultibodyPlant, context: Context, values: Mapping[str, float]) -
     """Set joints by name, rad or m."""
     q = plant.GetPositions(context)
     for name, value in values.items():
-        q[plant.GetJointByName(name).position_start()] = value
+        q[find_joint(plant, name).position_start()] = value
     plant.SetPositions(context, q)
 
 
@@ -110,10 +113,10 @@ def _tucked(
     context = plant.GetMyMutableContextFromRoot(root)
     query = graph.get_query_output_port()
     _put(plant, context, rest)
-    joints = [plant.GetJointByName(name) for name in other.joints]
+    joints = [find_joint(plant, name) for name in other.joints]
     lower = np.array([max(j.position_lower_limits()[0], -np.pi) for j in joints])
     upper = np.array([min(j.position_upper_limits()[0], np.pi) for j in joints])
-    shoulder = plant.GetJointByName(arm.joints[0]).frame_on_child().CalcPoseInWorld(context)
+    shoulder = find_joint(plant, arm.joints[0]).frame_on_child().CalcPoseInWorld(context)
     links = [plant.get_body(i) for i in plant.GetBodiesKinematicallyAffectedBy([joints[0].index()])]
     side = np.sign(joints[0].frame_on_child().CalcPoseInWorld(context).translation()[1]
                    - shoulder.translation()[1])  # fmt: skip

@@ -12,8 +12,8 @@ from matplotlib.patches import Rectangle as Patch
 
 from drake_screw.files import write_bytes
 from drake_screw.onboarding.design import SPACING, Design
-from drake_screw.visualization.palette import INK, OUTCOME_COLORS, PAPER
 from drake_screw.planning import Cause
+from drake_screw.visualization.palette import INK, OUTCOME_COLORS, PAPER
 
 SHADES = ListedColormap([PAPER, "#dbe4ea", "#b5c9d6", "#8aacc0"])
 
@@ -98,7 +98,11 @@ def save_reach_picture(design: Design, file: Path) -> None:
     """
     content = io.BytesIO()
     reach_figure(design).savefig(
-        content, format="png", dpi=150, metadata={"Software": None}, facecolor=PAPER,
+        content,
+        format="png",
+        dpi=150,
+        metadata={"Software": None},
+        facecolor=PAPER,
         bbox_inches="tight",
     )
     write_bytes(file, content.getvalue())

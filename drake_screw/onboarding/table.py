@@ -10,6 +10,7 @@ from drake_screw.onboarding.reach import HOLDS, reach_map
 from drake_screw.onboarding.reading import Robot
 from drake_screw.onboarding.rectangles import Rectangle
 from drake_screw.robot import ScrewChain, TableConfig
+from drake_screw.robot.names import find_frame
 
 LOW_SHOULDER = 0.6
 """m. An arm whose shoulder is no higher above its base is taken to stand on the table."""
@@ -35,7 +36,7 @@ THICKNESS = 0.04
 def stands_on_the_table(robot: Robot, arm: FoundArm, others: int, chain: ScrewChain) -> bool:
     """Whether a robot is an arm alone on its foot, and not a body on wheels or on a pedestal."""
     plant, inspector = robot.plant, robot.diagram.scene_graph().model_inspector()
-    base = plant.GetBodyByName(arm.base)
+    base = find_frame(plant, arm.base).body()
     context = plant.CreateDefaultContext()
     X_WF = base.EvalPoseInWorld(context).inverse()
     lowest = 0.0

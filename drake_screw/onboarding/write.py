@@ -177,7 +177,10 @@ def _rest(design: Design) -> list[str]:
 
 def _table_comment(design: Design) -> list[str]:
     why = "as asked for" if design.height_given else _why_high(design)
-    return [f"# A box that the arm must not touch. Its height: {why}.", "# Another: --table-height."]
+    return [
+        f"# A box that the arm must not touch. Its height: {why}.",
+        "# Another: --table-height.",
+    ]
 
 
 def _why_high(design: Design) -> str:
@@ -220,5 +223,3 @@ def _wrapped(text: str, indent: int) -> list[str]:
         else:
             line = f"{line} {part}" if line else part
     return [*lines, line]
-
-
