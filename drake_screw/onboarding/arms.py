@@ -226,7 +226,8 @@ def _belongs_to_the_body(tree: _Tree, index: JointIndex) -> bool:
 
 
 def _name(joints: Sequence[str]) -> str:
-    shared = "".join(c[0] for c in takewhile(lambda c: len(set(c)) == 1, zip(*joints)))
+    letters = zip(*joints, strict=False)
+    shared = "".join(c[0] for c in takewhile(lambda c: len(set(c)) == 1, letters))
     return re.sub(r"([_-]?(joint|arm_joint|j|a|actuator))?[_\-\d]*$", "", shared)
 
 

@@ -1,4 +1,4 @@
-"""How well an arm reaches the places of a table: by inverse kinematics, before anything is taught."""
+"""How well an arm reaches places on a table: inverse kinematics, before anything is taught."""
 
 from __future__ import annotations
 

@@ -60,10 +60,10 @@ def scenario_text(design: Design, name: str, folder: Path, command: str) -> str:
         f"  top: {_number(table.top)}",
         f"  thickness: {_number(table.thickness)}",
         "",
-        "# Where the bowl may stand: the largest area found in which a simulated demonstration at the",
-        f"# corner {found.corner[0]:.2f}, {found.corner[1]:.2f} covers {found.share:.1%} of places. "
-        "The picture beside this file shows what the",
-        "# arm reaches. A larger area takes more demonstrations, or will not be certified.",
+        "# Where the bowl may stand: the largest area found in which a simulated demonstration at",
+        f"# the corner {found.corner[0]:.2f}, {found.corner[1]:.2f} covers {found.share:.1%} of "
+        "it. The picture beside this file shows",
+        "# what the arm reaches. A larger area takes more demonstrations, or is not certified.",
         "objects:",
         f"  - name: {BOWL.name}",
         f"    x: [{_numbers(found.area.x)}]",
@@ -78,7 +78,7 @@ def scenario_text(design: Design, name: str, folder: Path, command: str) -> str:
         "regions:",
         f"  grid: {{x: {_cells(found.area.size[0])}, y: {_cells(found.area.size[1])}}}",
         "",
-        "# The run ends when every region succeeds with probability beta, with confidence 1 - delta.",
+        "# The run ends when each succeeds with probability beta at least, confidence 1 - delta.",
         "coverage:",
         "  beta: 0.95",
         "  epsilon: 0.02",
@@ -156,30 +156,32 @@ def _arm_comment(design: Design) -> list[str]:
 
 
 def _hand_comment(design: Design) -> list[str]:
-    hand = design.hand
-    text = [f"  # The frame that demonstrations move. Out of the hand is {hand.derived_from};"]
-    if hand.rotation is None:
-        return [*text, "  # its z axis points there."]
-    return [*text, "  # its z axis does not point there, so it is turned: roll, pitch, yaw."]
+    text = [
+        "  # The frame that demonstrations move; its z axis has to point out of the hand, which is"
+    ]
+    told = f"  # {design.hand.derived_from}"
+    if design.hand.rotation is None:
+        return [*text, f"{told}."]
+    return [*text, f"{told}: it is turned there by roll, pitch and yaw."]
 
 
 def _rest(design: Design) -> list[str]:
     if not design.rest:
         return []
-    shown = {name: value for name, value in design.rest.items()}
-    entries = ", ".join(f"{_quoted(name)}: {_number(value)}" for name, value in shown.items())
+    entries = ", ".join(f"{_quoted(k)}: {_number(v)}" for k, v in design.rest.items())
     return [
-        "  # Where other joints rest: fingers open, other arms out of the way, the rest as the model",
+        "  # Where other joints rest: fingers open, other arms out of the way, all else as the model",
         "  # has it.",
         *_wrapped(f"  parked: {{{entries}}}", 11),
     ]
 
 
 def _table_comment(design: Design) -> list[str]:
-    why = "as asked for" if design.height_given else _why_high(design)
+    why = "it was asked for" if design.height_given else _why_high(design)
     return [
-        f"# A box that the arm must not touch. Its height: {why}.",
-        "# Another: --table-height.",
+        "# A box that the arm must not touch. It is as high as it is because",
+        f"# {why}.",
+        "# For another height: --table-height.",
     ]
 
 
