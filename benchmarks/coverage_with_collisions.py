@@ -35,7 +35,9 @@ def measure(run: Path, per_region: int) -> tuple[str, list[np.ndarray], np.ndarr
         speeds.append(len(places) / (time.perf_counter() - began))
         rates.append(1.0 - outcomes.any_success.reshape(regions.K, per_region).mean(axis=1))
     lower, upper = regions.bounds(np.arange(regions.K))
-    title = f"{setup.scenario.name}, {len(demonstrations)} demonstrations"
+    count, turning = len(demonstrations), any(o.symmetry for o in setup.scenario.objects)
+    title = f"{setup.scenario.name}, {count} demonstration{'s' if count > 1 else ''}"
+    title += ", turned" if turning else ", as it stands"
     return title, rates, np.stack([lower[:, 0, :2], upper[:, 0, :2]], axis=1), speeds
 
 

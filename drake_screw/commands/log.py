@@ -34,4 +34,5 @@ def set_up_logging(*, verbose: bool = False) -> None:
         own.addHandler(_StandardError())
     for handler in own.handlers:
         handler.setFormatter(_VERBOSE if verbose else _BRIEF)
+    own.propagate = False  # importing pydrake gives the root logger a handler of its own
     own.setLevel(logging.DEBUG if verbose else logging.INFO)
