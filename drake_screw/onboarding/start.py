@@ -3,6 +3,7 @@ nothing."""
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,20 +14,22 @@ from drake_screw.robot import ScrewChain, Workcell
 from drake_screw.screws import pose
 from drake_screw.typing import Array
 
-ABOVE = (0.2, 0.3)
+ABOVE = (0.2, 0.3, 0.4)
 """m, heights of the hand over the table."""
-BEFORE = (0.0, 0.1, 0.2)
+BEFORE = (-0.1, 0.0, 0.1, 0.2)
 """m, that it is before the middle of the work area's near edge, towards the shoulder."""
 SIDES = (-0.25, 0.0, 0.25)
 """Parts of the work area's width that it is beside the middle."""
+ASIDE = (-0.6, 0.0, 0.6)
+"""rad, from the straight way out, that it points."""
 PITCH = (0.0, 0.15)
 """rad, of its z axis below the horizon."""
-SEEDS = 12
+SEEDS = 8
 COMFORT = 1.0
 """rad, of distance from the limits beyond which more is no better."""
 APART = 0.5
 """rad, in some joint, between starts that are worth trying both."""
-LEAST = 0.2
+LEAST = 0.15
 """rad, from every limit."""
 CLEARANCE = 0.02
 """m, from everything."""
@@ -61,10 +64,14 @@ def starts(
     q, there = solve(
         chain, within, np.repeat(p, SEEDS, 0), np.repeat(z, SEEDS, 0), seeds.reshape(-1, chain.n)
     )
-    q = np.round(q[there], DIGITS)
+    q = q[there]
+    if _rolls(chain):
+        q[:, -1] = within.middle[-1]
+    q = np.round(q, DIGITS)
     margin = within.margin(q)
     q, margin = q[margin >= LEAST], margin[margin >= LEAST]
     score = np.minimum(margin, COMFORT) + _agility(chain, q) + 0.3 * _elbow(chain, q)
+    score -= 0.5 * np.abs(chain.pose(q)[:, 1, 3] - sum(area.y) / 2.0)
     found: list[Start] = []
     away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, 1e3]
     X_WO = pose(np.eye(3), away)
@@ -84,16 +91,20 @@ def _targets(shoulder: Array, area: Rectangle, top: float) -> tuple[Array, Array
     """Places (m, 3) and directions (m, 3) of the hand."""
     places, directions = [], []
     middle = sum(area.y) / 2.0
-    for side in SIDES:
-        edge = np.array([area.x[0], middle + side * area.size[1]])
-        out = edge - shoulder[:2]
-        out /= np.linalg.norm(out)
-        for before in BEFORE:
-            for above in ABOVE:
-                for pitch in PITCH:
-                    places.append([*(edge - before * out), top + above])
-                    directions.append([*(np.cos(pitch) * out), -np.sin(pitch)])
+    for side, before, above, aside, pitch in itertools.product(SIDES, BEFORE, ABOVE, ASIDE, PITCH):
+        edge = np.array([area.x[0], middle + side * area.size[1]]) - shoulder[:2]
+        azimuth, distance = np.arctan2(edge[1], edge[0]), np.linalg.norm(edge) - before
+        out = np.array([np.cos(azimuth), np.sin(azimuth)])
+        places.append([*(shoulder[:2] + distance * out), top + above])
+        azimuth, level = azimuth + aside, np.cos(pitch)
+        directions.append([level * np.cos(azimuth), level * np.sin(azimuth), -np.sin(pitch)])
     return np.array(places), np.array(directions)
+
+
+def _rolls(chain: ScrewChain) -> bool:
+    """Whether the last joint turns the hand about its own z axis, so that any roll will do."""
+    w = chain.home[:3, :3].T @ chain.screws[-1, :3]
+    return bool(abs(w[2]) > 0.999)
 
 
 def _agility(chain: ScrewChain, q: Array) -> Array:

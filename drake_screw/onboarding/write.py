@@ -170,8 +170,8 @@ def _rest(design: Design) -> list[str]:
         return []
     entries = ", ".join(f"{_quoted(k)}: {_number(v)}" for k, v in design.rest.items())
     return [
-        "  # Where other joints rest: fingers open, other arms out of the way, all else as the model",
-        "  # has it.",
+        "  # Where other joints rest: fingers open, other arms out of the way, all else as in the",
+        "  # model.",
         *_wrapped(f"  parked: {{{entries}}}", 11),
     ]
 
