@@ -19,6 +19,7 @@ from drake_screw.onboarding.area import (
     verify,
 )
 from drake_screw.onboarding.arms import FoundArm, choose_arm, find_arms
+from drake_screw.onboarding.contacts import Pair, always_touching, letting_touch
 from drake_screw.onboarding.end_effector import FoundEndEffector, find_end_effector
 from drake_screw.onboarding.hand_ik import Range, range_of
 from drake_screw.onboarding.parked import parked
@@ -64,6 +65,7 @@ class Design:
         hand: the end effector.
         task: "pouring" or "scooping".
         rest: joints outside the arm.
+        touching: pairs of links that touch wherever the arm is, and may.
         on_the_table: whether the robot stands on the table.
         height_given: whether the table's height was asked for.
         table: under the work area.
@@ -82,6 +84,7 @@ class Design:
     hand: FoundEndEffector
     task: str
     rest: dict[str, float]
+    touching: tuple[Pair, ...]
     on_the_table: bool
     height_given: bool
     table: TableConfig
@@ -122,8 +125,11 @@ def design(
     rest = parked(robot, arm, [other for other in arms if other is not arm])
     say(f"arm '{arm.name}': {len(arm.joints)} joints, end effector '{hand.frame}'")
     bare = _config(robot, arm, hand, rest)
-    chain = build_workcell(bare).arm.screw_chain()
+    alone = build_workcell(bare)
+    chain = alone.arm.screw_chain()
     within = range_of(chain)
+    touching = always_touching(alone, within)
+    bare = letting_touch(bare, touching)
     standing = stands_on_the_table(robot, arm, len(arms) - 1, chain)
     top = _height(table_height, standing, chain, within, task)
     on_it = standing and abs(top) < 0.1
@@ -148,9 +154,10 @@ def design(
     remarks = [arm.remark] if arm.remark else []
     if found.area.size[0] < WANTED[0] - 1e-9 or found.area.size[1] < WANTED[1] - 1e-9:
         remarks.append("the work area is small; another --table-height may give a larger one")
+    given = table_height is not None
     return Design(
-        robot, arm, arms, why, hand, task, rest, on_it, table_height is not None, table, reach,
-        planned, start, found, chain, tuple(remarks),
+        robot, arm, arms, why, hand, task, rest, touching, on_it, given, table, reach, planned,
+        start, found, chain, tuple(remarks),
     )  # fmt: skip
 
 
@@ -266,8 +273,10 @@ def _largest(seen: Survey, chain: ScrewChain) -> Rectangle | None:
 
 def _no_area(robot: Robot, arm: FoundArm, top: float, why: str) -> ModelError:
     least = " x ".join(f"{side:g}" for side in SMALLEST)
+    short = f" (it has {arm.remark})" if arm.remark else ""
     return ModelError(
-        f"no work area of {least} m is found for arm '{arm.name}' at a table of {top:.2f} m: {why}",
+        f"no work area of {least} m is found for arm '{arm.name}'{short} at a table of "
+        f"{top:.2f} m: {why}",
         remedy="Give another --table-height (m, over the robot's base) or --arm, or write the "
         "scenario by hand, see docs/another_robot.md.",
         file=robot.file,

@@ -68,13 +68,14 @@ def _candidates(plant: MultibodyPlant, last: RigidBody) -> list[Frame]:
     welded = {body.index() for body in plant.GetBodiesWeldedTo(last)}
     frames = [plant.get_frame(FrameIndex(i)) for i in range(plant.num_frames())]
     names = [frame.name() for frame in frames]
+    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
+    ends = {f.index() for j in joints for f in (j.frame_on_parent(), j.frame_on_child())}
     return [
         frame
         for frame in frames
         if frame.body().index() in welded
         and names.count(frame.name()) == 1
-        and not frame.name().startswith("_")
-        and not frame.name().endswith(("_parent", "_child"))
+        and (frame.is_body_frame() or frame.index() not in ends)
         and (frame.name() == last.name() or not _NOT.search(frame.name().lower()))
     ]
 

@@ -52,6 +52,7 @@ def scenario_text(design: Design, name: str, folder: Path, command: str) -> str:
         *_wrapped(f"  start: [{_numbers(design.start.q)}]", 10),
         f"  base: {_quoted(arm.base)}",
         *_rest(design),
+        *_touching(design),
         "",
         *_table_comment(design),
         "table:",
@@ -117,6 +118,10 @@ def assumptions(design: Design) -> list[str]:
         lines.append(f"held: {', '.join(arm.held)} (robot.parked says where)")
     turned = f", turned by [{_numbers(hand.rotation)}]" if hand.rotation else ""
     lines.append(f"hand: '{hand.frame}'{turned}; z out of the hand by {hand.derived_from}")
+    if design.touching:
+        both = ", ".join(f"{a} and {b}" for a, b in design.touching[:3])
+        more = f" and {len(design.touching) - 3} more pairs" if len(design.touching) > 3 else ""
+        lines.append(f"touching: {both}{more} touch always; ignored (robot.ignore_collisions)")
     why_high = "as asked for" if design.height_given else _why_high(design)
     lines.append(f"table: top at {design.table.top:g} m, {why_high}; --table-height changes it")
     lines.append(
@@ -173,6 +178,17 @@ def _rest(design: Design) -> list[str]:
         "  # Where other joints rest: fingers open, other arms out of the way, all else as in the",
         "  # model.",
         *_wrapped(f"  parked: {{{entries}}}", 11),
+    ]
+
+
+def _touching(design: Design) -> list[str]:
+    if not design.touching:
+        return []
+    pairs = ", ".join(f"[{_quoted(a)}, {_quoted(b)}]" for a, b in design.touching)
+    return [
+        "  # Links that touch wherever the arm is, as their shapes are drawn: it is not looked at",
+        "  # whether they do.",
+        *_wrapped(f"  ignore_collisions: [{pairs}]", 22),
     ]
 
 
