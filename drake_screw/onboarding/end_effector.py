@@ -68,16 +68,21 @@ def _candidates(plant: MultibodyPlant, last: RigidBody) -> list[Frame]:
     welded = {body.index() for body in plant.GetBodiesWeldedTo(last)}
     frames = [plant.get_frame(FrameIndex(i)) for i in range(plant.num_frames())]
     names = [frame.name() for frame in frames]
-    joints = [plant.get_joint(i) for i in plant.GetJointIndices()]
-    ends = {f.index() for j in joints for f in (j.frame_on_parent(), j.frame_on_child())}
+    joints = tuple(f"{plant.get_joint(i).name()}_" for i in plant.GetJointIndices())
     return [
         frame
         for frame in frames
         if frame.body().index() in welded
         and names.count(frame.name()) == 1
-        and (frame.is_body_frame() or frame.index() not in ends)
+        and (frame.is_body_frame() or not _made_by_drake(frame.name(), joints))
         and (frame.name() == last.name() or not _NOT.search(frame.name().lower()))
     ]
+
+
+def _made_by_drake(name: str, joints: tuple[str, ...]) -> bool:
+    """Whether a frame is one that Drake makes at an end of a joint; `joints` are names and "_"."""
+    ends = ("_parent", "_child", "_F", "_M")
+    return name.startswith("_") or (name.startswith(joints) and name.endswith(ends))
 
 
 def _preference(frame: Frame) -> tuple[int, int]:
