@@ -11,6 +11,7 @@ from drake_screw.errors import ModelError
 from drake_screw.onboarding.hand_ik import Range, spread
 from drake_screw.robot import RobotConfig, Workcell
 from drake_screw.screws import pose
+from drake_screw.typing import Array
 
 Pair = tuple[str, str]
 
@@ -19,6 +20,9 @@ CONFIGURATIONS = 48
 
 ALWAYS = 0.95
 """Share of them from which on a pair touches always."""
+
+MOSTLY = 0.5
+"""Share that is enough of a pair that touches in the middle of all ranges, too."""
 
 CAN_BE_IGNORED = "ignore_collisions" in {field.name for field in fields(RobotConfig)}
 """Whether a robot's configuration can say which pairs may touch."""
@@ -33,13 +37,19 @@ def always_touching(workcell: Workcell, within: Range) -> tuple[Pair, ...]:
     """
     away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, 1e3]
     X_WO = pose(np.eye(3), away)
-    q = spread(within, CONFIGURATIONS)
-    found = Counter(
-        (pair[0], pair[1]) if pair[0] < pair[1] else (pair[1], pair[0])
-        for one in q
-        for pair in workcell.colliding_bodies(one, X_WO)
+
+    def touching(q: Array) -> set[Pair]:
+        return {(min(a, b), max(a, b)) for a, b in workcell.colliding_bodies(q, X_WO)}
+
+    at_rest = touching(within.middle)
+    found = Counter(pair for q in spread(within, CONFIGURATIONS) for pair in touching(q))
+    return tuple(
+        sorted(
+            pair
+            for pair, n in found.items()
+            if n >= (MOSTLY if pair in at_rest else ALWAYS) * CONFIGURATIONS
+        )
     )
-    return tuple(sorted(pair for pair, n in found.items() if n >= ALWAYS * len(q)))
 
 
 def letting_touch(config: RobotConfig, pairs: tuple[Pair, ...]) -> RobotConfig:

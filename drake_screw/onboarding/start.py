@@ -32,7 +32,7 @@ APART = 0.5
 LEAST = 0.15
 """rad, from every limit."""
 CLEARANCE = 0.02
-"""m, from everything."""
+"""m, from the table; links of one arm may be nearer to one another."""
 DIGITS = 3
 
 
@@ -75,7 +75,8 @@ def starts(
     found: list[Start] = []
     away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, 1e3]
     X_WO = pose(np.eye(3), away)
-    checker = workcell.keeping(CLEARANCE)
+    checker = workcell.checker.Clone()
+    checker.SetPaddingAllRobotEnvironmentPairs(CLEARANCE)
     for i in np.argsort(-score):
         if any(np.abs(q[i] - other.q).max() < APART for other in found):
             continue
