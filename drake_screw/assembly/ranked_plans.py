@@ -53,8 +53,13 @@ class RankedPlan:
 
     @cached_property
     def margins(self) -> dict[str, float]:
-        """How near each joint comes to a limit, in parts of its range: 0 at it, 0.5 at most."""
-        part = self.arm.margin(self.plan.q).min(axis=0) / (self.arm.upper - self.arm.lower)
+        """How near each joint comes to a limit, in parts of its range: 0 at it, 0.5 at most.
+
+        It is 0.5 of a joint without limits.
+        """
+        part, some = np.full(self.arm.n, 0.5), ~self.arm.endless
+        ranges = self.arm.upper[some] - self.arm.lower[some]
+        part[some] = self.arm.margin(self.plan.q).min(axis=0)[some] / ranges
         return dict(zip(self.arm.joint_names, part.tolist(), strict=True))
 
     @property

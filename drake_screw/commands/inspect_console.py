@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -99,7 +100,7 @@ def instance_table(attempts: Sequence[Attempt]) -> Table:
             "" if failed is None else f"{failed + 1} of {len(tried.guides)}",
             names[at] if at is not None else ", ".join(tried.bodies[0]) if tried.bodies else "",
             "" if failed is None else f"{float(tried.plan.outcome.fraction):.1%}",
-            f"{margin:.3f} ({names[joint]})",
+            f"{margin:.3f} ({names[joint]})" if np.isfinite(margin) else "no limits",
         )
     return table
 

@@ -18,7 +18,7 @@ class JointSummary:
     Attributes:
         name: of the joint.
         unit: "rad" or "m", of what follows.
-        lower, upper: limits.
+        lower, upper: limits; infinite of a joint that has none.
         least, greatest: positions recorded.
         margin: least distance from a limit.
         at: s, when that was.
@@ -39,6 +39,8 @@ class JointSummary:
         return "lower" if self.least - self.lower <= self.upper - self.greatest else "upper"
 
     def __str__(self) -> str:
+        if not np.isfinite(self.margin):
+            return "none has limits"
         return (
             f"{self.name} comes nearest to a limit, {self.margin:.3f} {self.unit} from its "
             f"{self.limit} one at {self.at:.2f} s"

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.errors import RecordingError
+from drake_screw.robot.endless import is_endless, unwrapped
 from drake_screw.typing import Array, PathLike
 
 CLAMPED_WITHIN = 1e-3  # rad; encoders read this far beyond a limit when the arm rests against it
@@ -63,12 +64,12 @@ def checked(
     """The recording made fit for use, or an error that says where it is not.
 
     Time is rebased to 0, samples with the stamp of the one before are dropped, angles within 1 mrad
-    beyond a limit are clamped, and of a still head and tail one sample is kept; `notes` says what
-    was done.
+    beyond a limit are clamped, angles of joints without limits are counted on where they jump by
+    full turns, and of a still head and tail one sample is kept; `notes` says what was done.
 
     Args:
         recording: as read.
-        lower, upper: (n,) joint limits, rad or m.
+        lower, upper: (n,) joint limits, rad or m; infinite where a joint has none.
         file: named in errors.
         lines: (m,) the line of each sample in `file`.
 
@@ -107,6 +108,7 @@ def checked(
     if not keep.all():
         notes.append(f"dropped {np.count_nonzero(~keep)} samples with a repeated time stamp")
         t, q, where = t[keep], q[keep], where[keep]
+    q = _counted_on(recording, q, lower, upper, notes)
     q = _within_limits(recording, q, lower, upper, notes, fail)
     gaps = np.flatnonzero((np.diff(t) > GAP) & (np.abs(np.diff(q, axis=0)).max(axis=1) > JUMP))
     if gaps.size:
@@ -134,6 +136,17 @@ def checked(
     t, q = t[first : last + 1], q[first : last + 1].copy()
     q[0], q[-1] = ends
     return replace(recording, t=t - t[0], q=q, notes=tuple(notes))
+
+
+def _counted_on(
+    recording: Recording, q: Array, lower: Array, upper: Array, notes: list[str]
+) -> Array:
+    smooth = unwrapped(q, is_endless(lower, upper))
+    changed = (np.abs(smooth - q) > np.pi).any(axis=0)
+    if changed.any():
+        names = np.array(recording.joint_names)[changed]
+        notes.append(f"counted {', '.join(names)} on through full turns, from near 0")
+    return np.where(changed, smooth, q)
 
 
 def _within_limits(

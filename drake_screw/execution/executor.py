@@ -103,8 +103,7 @@ class ScrewPlanExecutor(LeafSystem):
         self._parameters = _parameters(arm, self.control)
         self._plan = self.DeclareAbstractInputPort("plan", Value[object]())
         self._measured = self.DeclareVectorInputPort("measured_state", 2 * arm.n)
-        middle = (arm.lower + arm.upper) / 2.0
-        rest = _Memory(None, 0.0, 0.0, middle, np.zeros(arm.n), ExecutionStatus())
+        rest = _Memory(None, 0.0, 0.0, arm.middle, np.zeros(arm.n), ExecutionStatus())
         self._state = self.DeclareAbstractState(Value[object](rest))
         self.DeclareInitializationUnrestrictedUpdateEvent(self._initialize)
         self.DeclarePeriodicUnrestrictedUpdateEvent(self.control.period, 0.0, self._step)

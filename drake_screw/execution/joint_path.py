@@ -52,7 +52,7 @@ class JointPathSource(LeafSystem):
 
     def _write_desired(self, context: Context, output: BasicVector) -> None:
         plan = self._timed(context)
-        q, v = (self.arm.lower + self.arm.upper) / 2.0, np.zeros(self.arm.n)
+        q, v = self.arm.middle, np.zeros(self.arm.n)
         if plan is not None:
             point = plan.at(context.get_time())
             q, v = point.q, point.v

@@ -17,6 +17,7 @@ from scipy.stats import qmc
 from drake_screw.planning.outcomes import Outcomes, Plan
 from drake_screw.planning.paths import SPACING
 from drake_screw.robot import ScrewChain
+from drake_screw.robot.endless import within_a_turn
 from drake_screw.typing import Array
 
 WIDE, NARROW = 0.98, 0.5
@@ -24,11 +25,14 @@ WIDE, NARROW = 0.98, 0.5
 
 
 def seeds(chain: ScrewChain, count: int) -> Array:
-    """Configurations (count, n), spread evenly over the joints' ranges; the same every time."""
+    """Configurations (count, n), spread evenly over the joints' ranges; the same every time.
+
+    A joint without limits has a turn for its range.
+    """
     u = qmc.Sobol(chain.n, seed=0).random(int(2 ** np.ceil(np.log2(max(count, 1)))))[:count] - 0.5
     part = np.where(np.arange(count) % 2 == 0, NARROW, WIDE)
-    middle, extent = (chain.lower + chain.upper) / 2.0, chain.upper - chain.lower
-    return np.asarray(middle + part[:, None] * u * extent)
+    lower, upper = within_a_turn(chain.lower, chain.upper)
+    return np.asarray((lower + upper) / 2.0 + part[:, None] * u * (upper - lower))
 
 
 def approached(plan: Plan, q_start: Array) -> Plan:

@@ -23,6 +23,7 @@ from drake_screw.planning.plan_checker import check_of
 from drake_screw.planning.swept import SweptChecker
 from drake_screw.planning.symmetry import Symmetries
 from drake_screw.robot import ScrewChain
+from drake_screw.robot.endless import brought_near, is_endless
 from drake_screw.typing import Array
 
 EVALUATIONS_PER_STEP = 6
@@ -229,8 +230,12 @@ class BatchPlanner:
         return self.plans([demonstration], np.asarray(X_WO)[None], q_start, [0], variant)[0]
 
     def _starts(self, q_start: Array) -> Array:
-        """(1 + S, n) the arm's start, and the configurations that a free approach sets out from."""
-        return np.concatenate([q_start[None], self.seeds])
+        """(1 + S, n) the arm's start, and the configurations that a free approach sets out from.
+
+        Joints without limits set out from within half a turn of the start.
+        """
+        endless = is_endless(self.chain.lower, self.chain.upper)
+        return np.concatenate([q_start[None], brought_near(self.seeds, q_start, endless)])
 
     def _columns(
         self, demonstrations: Sequence[Demonstration], X_WO: Array, starts: range

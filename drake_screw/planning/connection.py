@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 
 from drake_screw.planning.plan_checker import PlanChecker
 from drake_screw.planning.rounding import rounded
+from drake_screw.robot.endless import drawn_range
 from drake_screw.typing import Array
 
 ITERATIONS = 300
@@ -127,9 +128,10 @@ def _tree_path(
 
     space = base.RealVectorStateSpace(n)
     bounds = base.RealVectorBounds(n)
+    lower, upper = drawn_range(arm.lower, arm.upper, ends)
     for i in range(n):
-        bounds.setLow(i, float(arm.lower[i]))
-        bounds.setHigh(i, float(arm.upper[i]))
+        bounds.setLow(i, float(lower[i]))
+        bounds.setHigh(i, float(upper[i]))
     space.setBounds(bounds)
     left = iter(range(iterations))
     with _quiet(seed):

@@ -105,8 +105,8 @@ class ReferencePlanner:
                 return points, fractions, Cause.UNREACHABLE, -1
             margin, before = self.arm.margin(moved), self.arm.margin(q)
             if (margin <= 0.0).any():
-                crossing = np.full_like(margin, np.inf)
-                np.divide(before, before - margin, out=crossing, where=margin <= 0.0)
+                crossing, over = np.full_like(margin, np.inf), margin <= 0.0
+                crossing[over] = before[over] / (before[over] - margin[over])
                 joint, part = int(np.argmin(crossing)), float(crossing.min())
                 points.append(q + part * (moved - q))
                 fractions.append(s + part * h)

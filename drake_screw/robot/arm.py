@@ -10,6 +10,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
 
 from drake_screw.errors import ModelError
+from drake_screw.robot.endless import is_endless, middles
 from drake_screw.robot.names import Instances, find_frame, find_joint
 from drake_screw.robot.screw_chain import ScrewChain
 from drake_screw.screws import shift
@@ -20,7 +21,8 @@ class Arm:
     """Kinematics and limits of some revolute and prismatic joints of a finalized plant.
 
     `owner` keeps alive what owns the plant: a plant does not keep its diagram. `joints` are the
-    plant's own, in the arm's order.
+    plant's own, in the arm's order. A joint that turns may be without limits (`endless`, (n,)):
+    they are infinite then.
 
     Args:
         plant: finalized; it stays the source of truth for everything here.
@@ -32,8 +34,8 @@ class Arm:
 
     Raises:
         ModelError: a name the plant does not have (the message lists those it has), a joint that
-            is neither revolute nor prismatic, joints out of order, one without finite limits, or
-            one that does not move E.
+            is neither revolute nor prismatic, joints out of order, one with half its limits or a
+            prismatic one without, or one that does not move E.
     """
 
     def __init__(
@@ -80,13 +82,16 @@ class Arm:
         self.lower = np.array([joint.position_lower_limits()[0] for joint in joints])
         self.upper = np.array([joint.position_upper_limits()[0] for joint in joints])
         self.velocity_limits = np.array([joint.velocity_upper_limits()[0] for joint in joints])
-        endless = ~(np.isfinite(self.lower) & np.isfinite(self.upper))
-        if endless.any():
+        self.endless = is_endless(self.lower, self.upper) & (np.array(self.units) == "rad")
+        limited = np.isfinite(self.lower) & np.isfinite(self.upper)
+        if not (limited | self.endless).all():
             raise ModelError(
-                f"joint '{self.joint_names[int(np.argmax(endless))]}' has no position limits",
-                remedy="Give it finite limits in the model; planning is about staying in them.",
+                f"joint '{self.joint_names[int(np.argmin(limited | self.endless))]}' has no "
+                "position limits",
+                remedy="Give it two finite limits in the model; only a joint that turns may do "
+                "without both.",
             )
-        moves = np.linalg.norm(self.jacobian((self.lower + self.upper) / 2.0), axis=0) > 1e-9
+        moves = np.linalg.norm(self.jacobian(self.middle), axis=0) > 1e-9
         if not moves.all():
             raise ModelError(
                 f"joint '{self.joint_names[int(np.argmin(moves))]}' does not move '{end_effector}'",
@@ -97,6 +102,11 @@ class Arm:
     def n(self) -> int:
         """Number of joints."""
         return len(self.joint_names)
+
+    @property
+    def middle(self) -> Array:
+        """(n,) rad or m, the middles of the joints' ranges; 0 of joints without limits."""
+        return middles(self.lower, self.upper)
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -145,7 +155,10 @@ class Arm:
         return np.asarray(F.CalcPose(self._context, self._E).GetAsMatrix4())
 
     def margin(self, q: ArrayLike) -> Array:
-        """Distance to the nearer limit, negative outside; (..., n) to (..., n), rad or m."""
+        """Distance to the nearer limit, negative outside; (..., n) to (..., n), rad or m.
+
+        Infinite for joints without limits.
+        """
         q = np.asarray(q, dtype=float)
         return np.minimum(q - self.lower, self.upper - q)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,6 +29,9 @@ from drake_screw.robot.tool import ToolConfig, add_tool
 
 WOOD = np.array([0.76, 0.68, 0.56, 1.0])
 CLAY = np.array([0.93, 0.93, 0.90, 1.0])
+
+
+_LOG = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -123,6 +127,7 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     for _, one in files:
         check_collision_shapes(one)
     models = _read(parser, file)
+    _LOG.debug("read %s", file)
     mimics = tuple(mimic for name, one in files for mimic in mimics_in(one, name))
     try:
         set_defaults(plant, models, robot.parked)

@@ -169,9 +169,12 @@ def headline(attempt: Attempt) -> str:
     arm, plan, total = attempt.arm, attempt.plan, len(attempt.guides)
     if plan.success:
         joint, margin = attempt.tightest
+        done = f"succeeds in all {total} screw segments{_turns(attempt)}"
+        if arm.endless[joint]:
+            return f"{done}; no joint has limits"
         return (
-            f"succeeds in all {total} screw segments{_turns(attempt)}; {arm.joint_names[joint]} "
-            f"comes nearest to a limit, {margin:.3f} {arm.units[joint]} away"
+            f"{done}; {arm.joint_names[joint]} comes nearest to a limit, {margin:.3f} "
+            f"{arm.units[joint]} away"
         )
     segment, fraction = int(plan.outcome.segment), float(plan.outcome.fraction)
     where = f"in screw segment {segment + 1} of {total}, {fraction:.1%} along it{_turns(attempt)}"

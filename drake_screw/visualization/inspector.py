@@ -152,7 +152,7 @@ class Inspector:
         arm = attempt.arm
         X_WJ = self.linkage.joint_frames(joint, q)
         color = STATUS_COLORS[FAILED]
-        if arm.units[joint] != "rad":
+        if arm.units[joint] != "rad" or arm.endless[joint]:
             mark = meshes.ring(DIAL[1], 0.014)
             draw(self.meshcat, f"{path}/mark", mark, color)
             return {f"{path}/mark": X_WJ}

@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 
 from drake_screw.demonstrations import Look
 from drake_screw.planning import Cause
+from drake_screw.robot.endless import drawn_range
 from drake_screw.typing import Array
 from drake_screw.visualization.palette import INK, OBJECT_COLORS, OUTCOME_COLORS, QUIET
 
@@ -84,25 +85,24 @@ def deviation_figure(look: Look) -> Figure:
 def joint_figure(look: Look) -> Figure:
     """Each joint between its limits, with its region of interest shaded and where it is tightest.
 
-    The lines at the top and at the bottom of a chart are the limits.
+    The lines at the top and at the bottom of a chart are the limits, if the joint has any.
     """
     names = look.recording.joint_names
     figure, axes = _charts(len(names), 0.55 + 0.92 * len(names))
+    least, greatest = drawn_range(look.lower, look.upper, look.q)
     for j, ax in enumerate(axes):
-        lower, upper = float(look.lower[j]), float(look.upper[j])
-        nearest = int(look.margin[:, j].argmin())
+        lower, upper = float(least[j]), float(greatest[j])
+        nearest, limited = int(look.margin[:, j].argmin()), np.isfinite(look.margin[0, j])
         _shade(ax, look)
         ax.plot(look.t, look.q[:, j], color=INK, linewidth=1.3, gid="joint")
-        ax.plot(look.t[nearest], look.q[nearest, j], "o", color=LIMIT, ms=4.5, gid="tightest")
-        for limit in (lower, upper):
-            ax.axhline(limit, color=LIMIT, linewidth=1.1, gid="limit")
+        if limited:
+            ax.plot(look.t[nearest], look.q[nearest, j], "o", color=LIMIT, ms=4.5, gid="tightest")
+            for limit in (lower, upper):
+                ax.axhline(limit, color=LIMIT, linewidth=1.1, gid="limit")
         ax.set_ylim(lower - 0.06 * (upper - lower), upper + 0.06 * (upper - lower))
         ax.set_yticks([lower, upper], [f"{lower:.2f}", f"{upper:.2f}"])
-        _beside(
-            ax,
-            0.5 * (lower + upper),
-            f"least margin\n{look.margin[nearest, j]:.3f} {look.units[j]}",
-        )
+        margin = f"least margin\n{look.margin[nearest, j]:.3f} {look.units[j]}"
+        _beside(ax, 0.5 * (lower + upper), margin if limited else "no limits")
         ax.set_ylabel(f"{names[j]}\n({look.units[j]})", rotation=0, ha="right", va="center")
         ax.yaxis.set_label_coords(-0.052, 0.5)
     return figure

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,7 @@ def attempt_record(attempt: Attempt) -> dict[str, Any]:
         "joint": None if at is None else arm.joint_names[at],
         "touching": [list(pair) for pair in attempt.bodies],
         "turned": {turn.body: turn.angle for turn in attempt.turned},
-        "least_margin": {"joint": arm.joint_names[joint], "margin": margin},
+        "least_margin": {"joint": arm.joint_names[joint], "margin": _of(margin)},
         "segments": [
             {
                 "status": status,
@@ -63,7 +64,7 @@ def attempt_record(attempt: Attempt) -> dict[str, Any]:
             for i, status in enumerate(attempt.status)
         ],
         "end": {
-            name: {"angle": float(q), "lower": float(low), "upper": float(high), "margin": float(m)}
+            name: {"angle": float(q), "lower": _of(low), "upper": _of(high), "margin": _of(m)}
             for name, q, low, high, m in zip(
                 arm.joint_names,
                 attempt.plan.q[-1],
@@ -74,6 +75,11 @@ def attempt_record(attempt: Attempt) -> dict[str, Any]:
             )
         },
     }
+
+
+def _of(value: float) -> float | None:
+    """A number for JSON, which knows no infinity: None of a joint without limits."""
+    return float(value) if isfinite(value) else None
 
 
 def attempts_csv(attempts: Sequence[Attempt]) -> str:

@@ -9,6 +9,7 @@ from markupsafe import Markup, escape
 from matplotlib.colors import to_hex
 
 from drake_screw.planning import Cause
+from drake_screw.robot.endless import drawn_range
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import FAILED, Attempt
@@ -36,7 +37,8 @@ def joint_strip(attempt: Attempt, joint: int, samples: Array) -> Markup:
     arm, total = attempt.arm, len(attempt.guides)
     x = 100.0 * attempt.progress[samples] / total
     q = attempt.plan.q[samples, joint]
-    share = (q - arm.lower[joint]) / (arm.upper[joint] - arm.lower[joint])
+    lower, upper = drawn_range(arm.lower, arm.upper, attempt.plan.q)
+    share = (q - lower[joint]) / (upper[joint] - lower[joint])
     y = 22.0 - 20.0 * share
     points = " ".join(f"{a:.2f},{b:.2f}" for a, b in zip(x, y, strict=True))
     hit = joint == attempt.failed_joint
@@ -64,6 +66,7 @@ def joint_chart(attempt: Attempt) -> Markup:
     """All joints' angles along the plan with their limits, one panel each, as one drawing."""
     arm, samples, total = attempt.arm, attempt.samples(160), len(attempt.guides)
     width, height, left, gap = 640.0, 54.0, 118.0, 12.0
+    lows, highs = drawn_range(arm.lower, arm.upper, attempt.plan.q)
     x = left + (width - left - 60.0) * attempt.progress[samples] / total
     right = width - 60.0
     parts = []
@@ -78,7 +81,7 @@ def joint_chart(attempt: Attempt) -> Markup:
         )
     for joint in range(arm.n):
         top = 16.0 + joint * (height + gap)
-        lower, upper = float(arm.lower[joint]), float(arm.upper[joint])
+        lower, upper = float(lows[joint]), float(highs[joint])
         q = attempt.plan.q[samples, joint]
         y = top + height * (1.0 - (q - lower) / (upper - lower))
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))

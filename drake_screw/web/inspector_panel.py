@@ -146,8 +146,8 @@ def drawn_state(drawn: Drawn) -> dict[str, Any]:
             {
                 "name": name,
                 "unit": arm.units[j],
-                "lower": float(arm.lower[j]),
-                "upper": float(arm.upper[j]),
+                "lower": None if arm.endless[j] else float(arm.lower[j]),
+                "upper": None if arm.endless[j] else float(arm.upper[j]),
                 "strip": joint_strip(attempt, j, samples),
             }
             for j, name in enumerate(arm.joint_names)

@@ -16,6 +16,7 @@ from drake_screw.demonstrations import FaithfulConfig, Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
 from drake_screw.planning import Cause
+from drake_screw.robot.endless import drawn_range
 from drake_screw.runs.narration import place
 from drake_screw.screws import exp, log, pose
 from drake_screw.typing import Array
@@ -136,6 +137,7 @@ class TeachingSession:
         """What the panel shows."""
         arm, q = self.guided.arm, self.guided.q
         margin = arm.margin(q)
+        least, greatest = drawn_range(arm.lower, arm.upper, self._setup.workcell.start[None])
         low, high = self._slider_range
         stuck = "the arm cannot follow: a joint is at its limit, or it is stretched out"
         asked = place(self._suggestion, self._suggestion.regions or self._setup.regions)
@@ -155,10 +157,10 @@ class TeachingSession:
             "joints": [
                 {
                     "name": name,
-                    "low": float(arm.lower[j]),
-                    "high": float(arm.upper[j]),
+                    "low": float(least[j]),
+                    "high": float(greatest[j]),
                     "value": float(q[j]),
-                    "margin": float(margin[j]),
+                    "margin": float(margin[j]) if isfinite(margin[j]) else None,
                     "unit": arm.units[j],
                 }
                 for j, name in enumerate(arm.joint_names)

@@ -78,7 +78,9 @@ def test_what_is_shipped_is_listed(command: Command) -> None:
     assert [item["name"] for item in shipped["scenarios"]] == [
         "pouring",
         "pouring_iiwa",
+        "pouring_panda",
         "pouring_paper",
+        "pouring_ur5e",
         "scooping",
         "scooping_paper",
     ]

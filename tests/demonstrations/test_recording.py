@@ -201,3 +201,17 @@ def test_the_callers_arrays_are_not_changed() -> None:
     before = q.copy()
     checked(recording(t, q), LOWER, UPPER)
     np.testing.assert_array_equal(q, before)
+
+
+def test_a_joint_without_limits_is_counted_on_where_it_jumps_by_a_turn() -> None:
+    t = np.arange(300) / 100.0
+    q = np.column_stack([2.5 + t, 0.5 * t])
+    jumping = q.copy()
+    jumping[:, 0] = (q[:, 0] + np.pi) % (2.0 * np.pi) - np.pi
+    lower, upper = np.array([-np.inf, -3.0]), np.array([np.inf, 3.0])
+    result = checked(recording(t, jumping), lower, upper)
+    np.testing.assert_allclose(result.q, q, atol=1e-12)
+    assert any("on through full turns" in note for note in result.notes)
+    again = checked(recording(t, q + np.array([20.0 * np.pi, 0.0])), lower, upper)
+    np.testing.assert_allclose(again.q, q, atol=1e-9)
+    assert checked(recording(t, q), lower, upper).notes == ()

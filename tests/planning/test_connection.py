@@ -186,7 +186,6 @@ def test_tries_begin_nearest_and_differ(planner, workcell) -> None:
 def test_without_ompl_nothing_changes_but_a_warning(workcell, monkeypatch, caplog) -> None:
     monkeypatch.setattr(connection.importlib.util, "find_spec", lambda _: None)
     connection.warn_of_its_absence.cache_clear()
-    monkeypatch.setattr(logging.getLogger("drake_screw"), "propagate", True)
     with caplog.at_level(logging.WARNING):
         planner = planner_of(workcell)
         planner_of(workcell)

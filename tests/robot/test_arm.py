@@ -168,12 +168,6 @@ def test_unknown_frame_names_the_nearest_and_lists_those_people_named() -> None:
     assert "world" not in listed
 
 
-def test_a_joint_without_limits_is_refused() -> None:
-    joints = (PLANAR[0], replace(PLANAR[1], limits=None), PLANAR[2])
-    with pytest.raises(ModelError, match="'p2' has no position limits"):
-        arm_of(joints)
-
-
 def test_a_joint_that_does_not_move_the_end_effector_is_refused() -> None:
     finger = JointText("finger", "0 0.1 0 0 0 0")
     plant = plant_of(sdf((*PLANAR, finger)))

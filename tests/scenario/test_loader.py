@@ -431,7 +431,8 @@ def test_unknown_name_lists_the_shipped_ones() -> None:
     error = error_of("pourng")
     assert error.message == "no scenario 'pourng'"
     assert error.remedy is not None
-    shipped = "pouring, pouring_iiwa, pouring_paper, scooping, scooping_paper"
+    shipped = "pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e, scooping, "
+    shipped += "scooping_paper"
     assert error.remedy.startswith(f"Did you mean 'pouring'? Shipped scenarios: {shipped}.")
 
 
@@ -441,7 +442,9 @@ def test_missing_file_suggests_its_neighbour(write: Callable[..., Path]) -> None
     error = error_of(wrong)
     assert error.message == f"no file '{wrong}'"
     assert f"Did you mean '{file}'? " in (error.remedy or "")
-    assert "pouring, pouring_iiwa, pouring_paper, scooping, scooping_paper" in (error.remedy or "")
+    assert "pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e" in (
+        error.remedy or ""
+    )
 
 
 def test_missing_file_suggests_a_shipped_name() -> None:

@@ -25,6 +25,8 @@ def first_crossing(b, i, rows, limits):  # type: ignore[no-untyped-def]
         for side in range(2):
             sign = 1.0 - 2.0 * side
             bound = limits[side, j]
+            if np.isinf(bound):
+                continue
             u = cubic_reaches_zero(sign * (q0 - bound), sign * d0, sign * (q1 - bound), sign * d1)
             if u < first:
                 first, joint = u, j

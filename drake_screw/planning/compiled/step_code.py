@@ -47,6 +47,7 @@ from drake_screw.planning.contract import (
     RESIDUAL_LIMIT,
     Redundancy,
 )
+from drake_screw.robot.endless import is_endless
 from drake_screw.typing import Array
 
 TABLEAU = (
@@ -219,7 +220,9 @@ def judge(lower: Array, upper: Array, settings: Settings) -> Program:
     q0, q3 = b[rows.q : rows.q_stage], b[rows.q_stage : rows.rate]
     q1, q2 = q0 + 1 / 3 * step * slopes[0], q3 - 1 / 3 * step * slopes[6]
     least, most = (f(f(q1, q2), q3) for f in (minimum, maximum))
-    margin = reduce(minimum, minimum(least - lower, upper - most))
+    limited = ~is_endless(lower.astype(float), upper.astype(float))
+    margins = minimum(least - lower, upper - most)[limited]
+    margin = reduce(minimum, margins) if limited.any() else 1.0 + abs(step)
 
     error = step * reduce(maximum, abs(np.array(ERROR) @ slopes)) / settings.tolerance + 1e-12
     root8 = sqrt(sqrt(sqrt(error)))

@@ -6,6 +6,7 @@ import numpy as np
 
 from drake_screw.planning.swept.along import Touches, say_if_it_takes_long, touches_along
 from drake_screw.planning.swept.cell import Cell, room_for
+from drake_screw.robot.endless import within_a_turn
 from drake_screw.typing import Array
 
 SPACING = 0.1
@@ -26,7 +27,7 @@ def never_meet(cell: Cell) -> bool:
     """
     a, b = cell.pairs[0]
     joints = np.arange(cell.joint[a] + 1, cell.joint[b] + 1)
-    lower, upper = cell.limits[:, joints]
+    lower, upper = within_a_turn(*cell.limits[:, joints])
     if len(joints) > MOST or not (np.isfinite(lower).all() and np.isfinite(upper).all()):
         return False
     values, more = np.zeros(1), 0.0

@@ -117,9 +117,10 @@ function show_sample(index) {
   const x = 100 * (segment + s) / total;
   document.querySelectorAll("#joints tbody tr").forEach((row, j) => {
     const joint = attempt.joints[j], q = attempt.q[sample][j];
-    const margin = Math.min(q - joint.lower, joint.upper - q);
+    const endless = joint.lower === null;  // a joint without limits
+    const margin = endless ? Infinity : Math.min(q - joint.lower, joint.upper - q);
     row.cells[2].textContent = q.toFixed(3);
-    row.cells[3].textContent = `${margin.toFixed(3)} ${joint.unit}`;
+    row.cells[3].textContent = endless ? "no limit" : `${margin.toFixed(3)} ${joint.unit}`;
     row.classList.toggle("limit", margin < 1e-4);
     row.classList.toggle("near", margin >= 1e-4 && margin < 0.1);
     const cursor = row.querySelector(".cursor");

@@ -50,8 +50,9 @@ listen((state) => {
     const row = rows.arm[i];
     if (!dragging.has(row.input)) row.input.value = j.value;
     row.value.textContent = j.value.toFixed(3);
-    row.margin.textContent = j.margin.toFixed(3) + " " + j.unit;
-    row.row.className = j.margin < 0.01 ? "limit" : j.margin < 0.1 ? "near" : "";
+    const margin = j.margin === null ? Infinity : j.margin;  // null: a joint without limits
+    row.margin.textContent = j.margin === null ? "no limit" : margin.toFixed(3) + " " + j.unit;
+    row.row.className = margin < 0.01 ? "limit" : margin < 0.1 ? "near" : "";
     row.input.disabled = !state.leading;
   });
   element("segments").replaceChildren(
