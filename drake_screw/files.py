@@ -8,9 +8,11 @@ import hashlib
 import io
 import os
 import shutil
+import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import datetime
+from functools import lru_cache
 from pathlib import Path
 
 from drake_screw.errors import DrakeScrewError, RunDirectoryError
@@ -117,6 +119,28 @@ def fresh_folder(parent: Path) -> Path:
         count += 1
         path = parent / f"{stamp}_{count}"
     return path
+
+
+def cache_folder() -> Path:
+    """Where what is worked out once is kept: numba's cache folder if it has one, else the user's.
+
+    Where neither can be written to, a temporary folder, which is a new one in every process.
+    """
+    user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    for parent in (os.environ.get("NUMBA_CACHE_DIR") or user, user):
+        folder = Path(parent) / "drake_screw"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=folder):
+                return folder
+        except OSError:
+            continue
+    return _temporary()
+
+
+@lru_cache
+def _temporary() -> Path:
+    return Path(tempfile.mkdtemp(prefix="drake_screw_"))
 
 
 def file_hash(file: Path) -> str:

@@ -12,7 +12,7 @@ from drake_screw.typing import PathLike
 
 Kind = Literal["models", "scenarios"]
 
-MODEL_SUFFIXES = (".sdf", ".urdf", ".xml", ".dmd.yaml")
+MODEL_SUFFIXES = (".sdf", ".urdf", ".xml", ".dmd.yaml", ".xacro")
 SCENARIO_SUFFIXES = (".yaml", ".yml")
 
 _ERRORS: dict[Kind, type[DrakeScrewError]] = {"models": ModelError, "scenarios": ScenarioError}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from functools import cached_property
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from drake_screw.assembly.sanity import (
     check_reach,
+    check_shapes,
     check_start,
     check_start_is_free,
     kept_within,
@@ -34,8 +36,12 @@ from drake_screw.robot import (
     Workcell,
     build_workcell,
 )
+from drake_screw.robot.packages import ModelPlace
+from drake_screw.robot.srdf import srdf_file
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, WorkArea
+
+_log = logging.getLogger(__name__)
 
 
 class PlanningSetup:
@@ -74,8 +80,8 @@ class PlanningSetup:
 
         Raises:
             ModelError: the model lacks a name, or a mesh cannot be read.
-            ScenarioError: the start is outside the limits, or not free of obstacles, or the work
-                area is out of reach.
+            ScenarioError: the start is outside the limits, or not free of obstacles, the work area
+                is out of reach, or collision shapes are missing.
         """
         try:
             workcell = build_workcell(
@@ -84,10 +90,19 @@ class PlanningSetup:
         except ModelError as error:
             file = error.file or self.scenario.source
             raise ModelError(error.message, remedy=error.remedy, file=file) from error
+        check_shapes(self.scenario, workcell)
         check_start(self.scenario, workcell.arm)
         check_start_is_free(self.scenario, workcell)
         check_reach(self.scenario, workcell.arm, self.area)
         return workcell
+
+    @property
+    def srdf(self) -> dict[str, Path]:
+        """The robot's SRDF file, by its place in the scenario, if it has one."""
+        if self.robot.srdf is None:
+            return {}
+        packages = ModelPlace(self.robot.model, self.robot.packages).packages
+        return {"robot.srdf": srdf_file(self.robot.srdf, packages)}
 
     @property
     def meshes(self) -> dict[str, Path]:
@@ -136,6 +151,11 @@ class PlanningSetup:
     @cached_property
     def careful_planner(self) -> CollisionFreePlanner:
         """Plans what is to be executed, whether or not the scenario looks at collisions."""
+        if self.workcell.model.incomplete:
+            _log.warning(
+                "collision checks are incomplete: shapes are missing of %s",
+                ", ".join(self.workcell.model.incomplete),
+            )
         return CollisionFreePlanner(
             self.batch_planner, self.workcell, self.scenario.planner.clearance
         )

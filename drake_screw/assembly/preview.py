@@ -20,7 +20,13 @@ from drake_screw.assembly.preview_parts import (
     PreviewedTool,
     PreviewedTree,
 )
-from drake_screw.assembly.sanity import Covered, covered_by_obstacles, looks_aside
+from drake_screw.assembly.sanity import (
+    Covered,
+    covered_by_obstacles,
+    looks_aside,
+    missing_shapes,
+    not_shown,
+)
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import CertifyOrSplit
 from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
@@ -44,6 +50,9 @@ class Preview:
         objects: where they may stand.
         obstacles: what else stands around.
         covered: obstacles in the work area.
+        unseen: collision shapes of the robot that cannot be had, a line each.
+        not_shown: looks of the robot that cannot be had, likewise, in one line.
+        unknown_links: named as links that may touch, and not in the model.
         freedoms: symmetries that are taken for granted.
         approach: how the arm comes to the first guiding pose, "screw" or "free".
         regions: how many; None where they are adaptive.
@@ -75,6 +84,9 @@ class Preview:
     objects: tuple[PreviewedObject, ...]
     obstacles: tuple[PreviewedObstacle, ...]
     covered: tuple[Covered, ...]
+    unseen: tuple[str, ...]
+    not_shown: str | None
+    unknown_links: tuple[str, ...]
     freedoms: tuple[Freedom, ...]
     approach: str
     regions: int | None
@@ -140,6 +152,13 @@ class Preview:
         if self.looks_aside is not None:
             yield "note", self.looks_aside
         yield from (("note", str(item)) for item in self.covered)
+        if self.unseen:
+            yield "note", "collision checks are incomplete; these shapes of the robot are missing:"
+            yield from (("", f"  {line}") for line in self.unseen)
+        if self.not_shown is not None:
+            yield "note", self.not_shown
+        if self.unknown_links:
+            yield "note", f"links that the robot's model lacks: {', '.join(self.unknown_links)}"
         if self.lacks_ompl:
             yield "note", connection.ABSENT
         rate = self.plans_per_second
@@ -186,6 +205,9 @@ def preview(scenario: Scenario) -> Preview:
             for o in setup.obstacles
         ),
         covered=covered_by_obstacles(setup.workcell, setup.area),
+        unseen=missing_shapes(setup.workcell),
+        not_shown=not_shown(setup.workcell),
+        unknown_links=setup.workcell.unknown_links,
         freedoms=freedoms(scenario),
         approach=scenario.planner.approach,
         regions=setup.regions.K if tree is None else None,

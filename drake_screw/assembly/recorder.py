@@ -33,6 +33,7 @@ from drake_screw.errors import ModelError, RecordingError
 from drake_screw.planning import Planner
 from drake_screw.plugins import find
 from drake_screw.robot import Arm, RobotConfig
+from drake_screw.robot.model_file import ModelFile
 from drake_screw.robot.parts import add_robot
 from drake_screw.scenario.workcell_blocks import RecordedOnBlock
 from drake_screw.tasks import WorkArea
@@ -67,14 +68,19 @@ class Recorder:
         own: that is planned for; may be the same.
         area: where the objects may stand for it.
         robot: model of the robot that was led; None where `arm` is `own`.
-        model_file: that model's file; None likewise.
+        model: that was read of it; None likewise.
     """
 
     arm: Arm
     own: Arm
     area: WorkArea
     robot: str | None = None
-    model_file: Path | None = None
+    model: ModelFile | None = None
+
+    @property
+    def model_file(self) -> Path | None:
+        """That model's file."""
+        return None if self.model is None else self.model.file
 
     @classmethod
     def of_another(cls, block: RecordedOnBlock, own: Arm, area: WorkArea) -> Self:
@@ -91,6 +97,8 @@ class Recorder:
             block.base,
             block.parked,
             end_effector_rotation=block.end_effector_rotation,
+            packages=block.packages,
+            xacro=block.xacro,
         )
         plant = MultibodyPlant(0.0)
         try:
@@ -101,7 +109,7 @@ class Recorder:
             raise ModelError(
                 f"recorded_on: {error.message}", remedy=error.remedy, file=error.file
             ) from error
-        return cls(arm, own, area, str(block.model), added.file)
+        return cls(arm, own, area, str(block.model), added.model)
 
     def read(self, path: Path, format: str = FOLDER) -> Recording:
         """One recording, in a format that `plugins.find` knows.

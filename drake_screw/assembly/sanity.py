@@ -16,6 +16,8 @@ from drake_screw.tasks import WorkArea
 TOOL = 0.5
 """m. The end effector is never farther than this from the object that it works on."""
 
+LISTED = 6
+"""Of shapes that are missing; a robot can have many."""
 FAR = 1e3
 """m, where objects are that are to touch nothing."""
 PLACES = 25
@@ -79,6 +81,45 @@ def kept_within(scenario: Scenario, arm: Arm) -> ScrewChain:
             file=scenario.source,
         )
     return replace(chain, lower=lower, upper=upper) if margin > 0.0 else chain
+
+
+def check_shapes(scenario: Scenario, workcell: Workcell) -> None:
+    """Check that the robot has all collision shapes of its model, where collisions are looked at.
+
+    Raises:
+        ScenarioError: it has not, and the scenario does not say that this is all right.
+    """
+    block, missing = scenario.planner, missing_shapes(workcell)
+    if not missing or not block.collision or block.incomplete_shapes:
+        return
+    listed = "".join(f"\n  {line}" for line in missing)
+    one = workcell.model.collision_left_out == 1
+    raise ScenarioError(
+        f"planner.collision: {'a collision shape' if one else 'collision shapes'} of the robot "
+        f"cannot be had, so what touches there would not be seen:{listed}",
+        remedy="Mend what is missing; or write incomplete_shapes: true in planner, and the "
+        "certificate names these links; or collision: false.",
+        file=scenario.source,
+    )
+
+
+def missing_shapes(workcell: Workcell) -> tuple[str, ...]:
+    """Collision shapes of the robot's model that cannot be had, in words, a line each."""
+    found = [str(s) for s in workcell.model.left_out if s.role == "collision"]
+    more = len(found) - LISTED
+    return (*found[:LISTED], *([f"and {more} more"] if more > 0 else ()))
+
+
+def not_shown(workcell: Workcell) -> str | None:
+    """What pictures lack of the robot, in a line; None where nothing."""
+    left_out = workcell.model.looks_left_out
+    if not left_out:
+        return None
+    one = len(left_out) == 1
+    return (
+        f"{len(left_out)} mesh{'' if one else 'es'} of the robot {'is' if one else 'are'} not "
+        f"shown, such as: {left_out[0]}"
+    )
 
 
 def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from pydrake.multibody.parsing import Parser
@@ -13,6 +15,7 @@ from drake_screw.errors import ModelError
 from drake_screw.robot import RobotConfig
 from drake_screw.robot.names import scoped
 from drake_screw.robot.parts import add_robot
+from drake_screw.robot.xacro_text import SUFFIX
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
 
@@ -29,12 +32,15 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
         ModelError: the model cannot be read or lacks the base, or it is one of the robot that the
             recordings were made on.
     """
-    block = scenario.robot.model_copy(update={"model": str(Path(model).resolve())})
+    text = os.fspath(model)
+    place = text if "://" in text else str(Path(model).resolve())
+    block = scenario.robot.model_copy(update={"model": place})
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
-    robot_models = add_robot(
-        parser, RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
-    ).models
+    xacro = block.xacro if place.endswith(SUFFIX) else {}
+    block = block.model_copy(update={"xacro": xacro})
+    config = RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
+    robot_models = add_robot(parser, replace(config, packages=block.packages, xacro=xacro)).models
     names = _names(plant.get_joint(i) for i in plant.GetJointIndices())
     other = scenario.recorded_on
     if other is not None and set(other.joints) <= names and not set(block.joints) <= names:

@@ -31,7 +31,10 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         block.base,
         block.parked,
         tool_config(scenario),
-        block.end_effector_rotation,
+        end_effector_rotation=block.end_effector_rotation,
+        packages=block.packages,
+        xacro=block.xacro,
+        srdf=block.srdf,
     )
 
 

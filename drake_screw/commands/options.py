@@ -39,7 +39,7 @@ SetOption = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key, as in coverage.beta=0.9."),
 ]
 ModelOption = Annotated[
-    Path | None,
+    str | None,
     typer.Option(metavar="FILE", help="Another robot model with the same joint names."),
 ]
 DemonstrationsOption = Annotated[
@@ -72,7 +72,7 @@ VerboseOption = Annotated[
 def chosen_scenario(
     scenario: str | None,
     changes: Sequence[str] | None = None,
-    model: Path | None = None,
+    model: str | None = None,
     *,
     seed: int | None = None,
     demonstrations: Path | None = None,

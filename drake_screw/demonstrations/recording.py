@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.errors import RecordingError
-from drake_screw.robot.endless import is_endless, unwrapped
+from drake_screw.screws.endless import is_endless, unwrapped
 from drake_screw.typing import Array, PathLike
 
 CLAMPED_WITHIN = 1e-3  # rad; encoders read this far beyond a limit when the arm rests against it

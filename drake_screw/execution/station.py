@@ -40,6 +40,7 @@ from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
 from drake_screw.execution.wiring import drive, measured_state, resting
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.robot.ignored import ignore, ignored_pairs
 from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.robot.tool import let_touch
 from drake_screw.typing import Array
@@ -138,6 +139,7 @@ def build_station(
         plant.set_gravity_enabled(model, False)
     plant.Finalize()
     _ignore_contacts_of_objects(plant, scene_graph, added.instances)
+    ignore(plant, scene_graph, added.instances, ignored_pairs(robot))
     if robot.tool is not None and added.tool is not None:
         let_touch(plant, scene_graph, added.tool, robot.tool.touches)
     arm = _kinematics(robot)

@@ -2,54 +2,34 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import fields, replace
 
 import numpy as np
 
 from drake_screw.errors import ModelError
-from drake_screw.onboarding.hand_ik import Range, spread
 from drake_screw.robot import RobotConfig, Workcell
-from drake_screw.screws import pose
-from drake_screw.typing import Array
+from drake_screw.robot.proposed import proposed_pairs
 
 Pair = tuple[str, str]
 
-CONFIGURATIONS = 48
+CONFIGURATIONS = 200
 """That are looked at."""
 
-ALWAYS = 0.95
-"""Share of them from which on a pair touches always."""
-
 MOSTLY = 0.5
-"""Share that is enough of a pair that touches in the middle of all ranges, too."""
+"""Share of them in which a pair touches that touches at rest, too, and may from then on."""
 
 CAN_BE_IGNORED = "ignore_collisions" in {field.name for field in fields(RobotConfig)}
 """Whether a robot's configuration can say which pairs may touch."""
 
 
-def always_touching(workcell: Workcell, within: Range) -> tuple[Pair, ...]:
-    """Pairs of the robot's links that touch in nearly all configurations of the arm.
+def always_touching(workcell: Workcell) -> tuple[Pair, ...]:
+    """Pairs of links that touch in all configurations of the arm, or at rest and mostly.
 
     Args:
-        workcell: of the robot alone.
-        within: where the arm's configurations are.
+        workcell: of the robot alone, its start the arm at rest.
     """
-    away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, 1e3]
-    X_WO = pose(np.eye(3), away)
-
-    def touching(q: Array) -> set[Pair]:
-        return {(min(a, b), max(a, b)) for a, b in workcell.colliding_bodies(q, X_WO)}
-
-    at_rest = touching(within.middle)
-    found = Counter(pair for q in spread(within, CONFIGURATIONS) for pair in touching(q))
-    return tuple(
-        sorted(
-            pair
-            for pair, n in found.items()
-            if n >= (MOSTLY if pair in at_rest else ALWAYS) * CONFIGURATIONS
-        )
-    )
+    found = proposed_pairs(workcell, np.random.default_rng(0), CONFIGURATIONS)
+    return tuple((pair.a, pair.b) for pair in found if pair.share >= MOSTLY)
 
 
 def letting_touch(config: RobotConfig, pairs: tuple[Pair, ...]) -> RobotConfig:

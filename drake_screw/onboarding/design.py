@@ -128,7 +128,7 @@ def design(
     alone = build_workcell(bare)
     chain = alone.arm.screw_chain()
     within = range_of(chain)
-    touching = always_touching(alone, within)
+    touching = always_touching(alone)
     bare = letting_touch(bare, touching)
     standing = stands_on_the_table(robot, arm, len(arms) - 1, chain)
     top = _height(table_height, standing, chain, within, task)
@@ -178,7 +178,7 @@ def _config(
     robot: Robot, arm: FoundArm, hand: FoundEndEffector, rest: dict[str, float]
 ) -> RobotConfig:
     return RobotConfig(
-        str(robot.file),
+        robot.model if "://" in robot.model else str(robot.file),
         arm.joints,
         hand.frame,
         (0.0,) * len(arm.joints),

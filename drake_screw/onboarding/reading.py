@@ -42,8 +42,8 @@ def read_robot(model: str) -> Robot:
     """
     builder = RobotDiagramBuilder(time_step=0.0)
     added = add_robot(builder.parser(), RobotConfig(model, (), "", (), base=WORLD))
-    files = model_files(added.file, builder.parser().package_map())
+    files = model_files(added.model.read, builder.parser().package_map())
     mimics = frozenset(mimic.follower for name, one in files for mimic in mimics_in(one, name))
     plant: MultibodyPlant = builder.plant()
     plant.Finalize()
-    return Robot(model, added.file, builder.Build(), plant, mimics)
+    return Robot(model, added.model.file, builder.Build(), plant, mimics)

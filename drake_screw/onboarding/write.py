@@ -141,6 +141,8 @@ def scenario_name(robot: str) -> str:
 
 def model_path(design: Design, folder: Path) -> str:
     """How the scenario names its model: as it is shipped, or by a path from the folder."""
+    if "://" in design.robot.model:
+        return design.robot.model
     if os.sep not in design.robot.model and not Path(design.robot.model).is_file():
         return design.robot.model
     relative = os.path.relpath(design.robot.file, folder.resolve())

@@ -17,7 +17,7 @@ from scipy.stats import qmc
 from drake_screw.planning.outcomes import Outcomes, Plan
 from drake_screw.planning.paths import SPACING
 from drake_screw.robot import ScrewChain
-from drake_screw.robot.endless import within_a_turn
+from drake_screw.screws.endless import within_a_turn
 from drake_screw.typing import Array
 
 WIDE, NARROW = 0.98, 0.5

@@ -23,7 +23,7 @@ from drake_screw.planning.plan_checker import check_of
 from drake_screw.planning.swept import SweptChecker
 from drake_screw.planning.symmetry import Symmetries
 from drake_screw.robot import ScrewChain
-from drake_screw.robot.endless import brought_near, is_endless
+from drake_screw.screws.endless import brought_near, is_endless
 from drake_screw.typing import Array
 
 EVALUATIONS_PER_STEP = 6

@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 
 from drake_screw.planning.plan_checker import PlanChecker
 from drake_screw.planning.rounding import rounded
-from drake_screw.robot.endless import drawn_range
+from drake_screw.screws.endless import drawn_range
 from drake_screw.typing import Array
 
 ITERATIONS = 300

@@ -10,10 +10,10 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import JacobianWrtVariable
 
 from drake_screw.errors import ModelError
-from drake_screw.robot.endless import is_endless, middles
 from drake_screw.robot.names import Instances, find_frame, find_joint
 from drake_screw.robot.screw_chain import ScrewChain
 from drake_screw.screws import shift
+from drake_screw.screws.endless import is_endless, middles
 from drake_screw.typing import Array
 
 

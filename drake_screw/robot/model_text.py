@@ -6,7 +6,6 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from drake_screw.errors import ModelError
-from drake_screw.robot.shapes import MESH_SUFFIXES
 
 SIZES = {
     "box": ("size",),
@@ -24,23 +23,20 @@ HALF_AXES = ("a", "b", "c")
 """Of Drake's own ellipsoids, in place of radii."""
 
 
-def check_collision_shapes(file: Path) -> None:
+def check_collision_shapes(root: ET.Element, file: Path) -> None:
     """Refuse collision shapes that the reader of SDF replaces or leaves out without an error.
 
     A size that is missing or not above 0 is taken for 1 m, and a shape that Drake does not know is
-    left out; of URDF Drake says so itself, but not of which link. A file of another kind, or one
-    that cannot be parsed, is left to Drake.
+    left out; of URDF Drake says so itself, but not of which link.
+
+    Args:
+        root: of a model, as `parse_model` has it: URDF, or SDF.
+        file: it is from.
 
     Raises:
-        ModelError: there is one, or a mesh of a kind that Drake makes no convex hull of.
+        ModelError: there is one.
     """
-    if file.suffix.lower() not in (".sdf", ".urdf"):
-        return
-    try:
-        root = ET.parse(file).getroot()
-    except (ET.ParseError, OSError):
-        return
-    sdf = file.suffix.lower() == ".sdf"
+    sdf = root.tag == "sdf"
     for link in root.iter("link"):
         for collision in link.iterfind("collision"):
             for shape in collision.iterfind("geometry/*"):
@@ -56,18 +52,9 @@ def check_collision_shapes(file: Path) -> None:
 
 def _wrong(shape: ET.Element, sdf: bool) -> tuple[str, str] | None:
     """What is wrong with a shape, and the remedy; None if nothing is."""
-    prefix, _, kind = shape.tag.rpartition("}")
-    if prefix and "drake" not in prefix:
+    prefix, _, kind = shape.tag.rpartition(":")
+    if prefix and prefix != "drake":
         return None
-    if kind == "mesh":
-        path = (shape.findtext("uri") or "").strip() if sdf else shape.get("filename", "")
-        suffix = Path(path).suffix.lower()
-        if suffix in MESH_SUFFIXES:
-            return None
-        return (
-            f"is the mesh '{path}', of which Drake makes no convex hull",
-            f"Convert it to {', '.join(MESH_SUFFIXES[:-1])} or {MESH_SUFFIXES[-1]}.",
-        )
     if kind not in SIZES:
         if kind in OTHERS or not sdf:
             return None
@@ -87,7 +74,7 @@ def _wrong(shape: ET.Element, sdf: bool) -> tuple[str, str] | None:
 def _text(shape: ET.Element, name: str, sdf: bool) -> str:
     if not sdf:
         return shape.get(name, "")
-    return next((e.text or "" for e in shape if e.tag.rpartition("}")[2] == name), "")
+    return next((e.text or "" for e in shape if e.tag.rpartition(":")[2] == name), "")
 
 
 def _numbers(text: str) -> list[float]:

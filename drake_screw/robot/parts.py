@@ -16,14 +16,15 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import FixedOffsetFrame, ModelInstanceIndex, RigidBody, SpatialInertia
 
 from drake_screw.errors import ModelError
-from drake_screw.resources import MODEL_SUFFIXES, find_resource
+from drake_screw.robot.addresses import add_packages
 from drake_screw.robot.arm import Arm
 from drake_screw.robot.base import fix_base, set_defaults, without_furniture
 from drake_screw.robot.directives import model_files
 from drake_screw.robot.mimic import follow, mimics_in
-from drake_screw.robot.model_text import check_collision_shapes
+from drake_screw.robot.model_file import ModelFile, check_shapes_of, model_file
 from drake_screw.robot.names import check_apart, find_frame
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
+from drake_screw.robot.packages import ModelPlace
 from drake_screw.robot.shapes import register
 from drake_screw.robot.tool import ToolConfig, add_tool
 
@@ -46,6 +47,9 @@ class RobotConfig:
     parked: Mapping[str, float] = field(default_factory=dict)
     tool: ToolConfig | None = None
     end_effector_rotation: tuple[float, float, float] | None = None
+    packages: Mapping[str, Path] = field(default_factory=dict)
+    xacro: Mapping[str, object] = field(default_factory=dict)
+    srdf: str | None = None
 
     @property
     def frame(self) -> str:
@@ -84,7 +88,7 @@ class RobotInPlant(NamedTuple):
     Attributes:
         config: what it is.
         plant: that it was added to.
-        file: of its model.
+        model: its model, as the user has it and as Drake reads it.
         models: all models that the file adds; names are looked up in these.
         instances: those that are the robot. A model without joints that stands by itself, a table
             that directives add beside an arm, is none of it.
@@ -94,7 +98,7 @@ class RobotInPlant(NamedTuple):
 
     config: RobotConfig
     plant: MultibodyPlant
-    file: Path
+    model: ModelFile
     models: tuple[ModelInstanceIndex, ...]
     instances: tuple[ModelInstanceIndex, ...]
     tool: RigidBody | None
@@ -122,11 +126,16 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
             collision shape that Drake would not take as it is, or cannot be fixed as wanted.
     """
     plant = parser.plant()
-    file = find_resource("models", robot.model, MODEL_SUFFIXES)
-    files = model_files(file, parser.package_map())
+    place = ModelPlace(robot.model, robot.packages)
+    shapes = plant.geometry_source_is_registered()
+    model = model_file(place, robot.xacro, shapes=shapes)
+    file = model.file
+    add_packages(parser.package_map(), model.read, place.packages, meshes=shapes)
+    files = model_files(model.read, parser.package_map())
     for _, one in files:
-        check_collision_shapes(one)
-    models = _read(parser, file)
+        if one != model.read:
+            check_shapes_of(one)
+    models = _read(parser, model)
     _LOG.debug("read %s", file)
     mimics = tuple(mimic for name, one in files for mimic in mimics_in(one, name))
     try:
@@ -139,19 +148,19 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     except ModelError as error:
         raise ModelError(error.message, remedy=error.remedy, file=error.file or file) from error
     tool = None if robot.tool is None else add_tool(plant, models, robot.tool)
-    return RobotInPlant(robot, plant, file, models, instances, tool, held)
+    return RobotInPlant(robot, plant, model, models, instances, tool, held)
 
 
-def _read(parser: Parser, file: Path) -> tuple[ModelInstanceIndex, ...]:
+def _read(parser: Parser, model: ModelFile) -> tuple[ModelInstanceIndex, ...]:
     try:
-        models = tuple(parser.AddModels(str(file)))
+        models = tuple(parser.AddModels(str(model.read)))
     except (RuntimeError, ValueError, SystemExit) as error:
-        raise ModelError(f"Drake cannot read this model: {error}", file=file) from error
+        raise ModelError(f"Drake cannot read this model: {error}", file=model.file) from error
     if not models:
         raise ModelError(
             "there is no model in this file",
             remedy="Directives name the robot's models, each in an add_model.",
-            file=file,
+            file=model.file,
         )
     return models
 

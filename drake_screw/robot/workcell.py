@@ -22,6 +22,8 @@ from pydrake.planning import (
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.arm import Arm
+from drake_screw.robot.ignored import ignore, ignored_pairs
+from drake_screw.robot.model_file import ModelFile
 from drake_screw.robot.names import shown_name
 from drake_screw.robot.obstacles import ObstacleConfig
 from drake_screw.robot.parts import (
@@ -52,10 +54,11 @@ class Workcell:
         start: (n,) rad, its start configuration.
         objects: the objects' bodies.
         robot: the model instances of the robot, and of what it holds.
-        model_file: where the robot was read from.
+        model: what the robot was read from.
         checker: looks at collisions.
         obstacles: the obstacles' bodies.
         tool: the body of what the end effector holds, if that has a shape.
+        unknown_links: named among the pairs that may touch, but none of the robot's.
     """
 
     diagram: RobotDiagram
@@ -65,10 +68,16 @@ class Workcell:
     start: Array
     objects: tuple[RigidBody, ...]
     robot: tuple[ModelInstanceIndex, ...]
-    model_file: Path
+    model: ModelFile
     checker: SceneGraphCollisionChecker
     obstacles: tuple[RigidBody, ...] = ()
     tool: RigidBody | None = None
+    unknown_links: tuple[str, ...] = ()
+
+    @property
+    def model_file(self) -> Path:
+        """Where the robot was read from."""
+        return self.model.file
 
     def positions(self, q: ArrayLike, X_WO: ArrayLike) -> Array:
         """Positions of the whole plant.
@@ -196,6 +205,7 @@ def build_workcell(
     if robot.tool is not None and added.tool is not None:
         arm.held(robot.tool.frame)
         let_touch(plant, scene_graph, added.tool, robot.tool.touches)
+    unknown_links = ignore(plant, scene_graph, added.instances, ignored_pairs(robot))
     diagram = builder.Build()
     arm.owner = diagram
     checker = SceneGraphCollisionChecker(
@@ -205,8 +215,8 @@ def build_workcell(
     )
     start = np.array(robot.start, dtype=float)
     workcell = Workcell(
-        diagram, plant, scene_graph, arm, start, bodies, added.instances, added.file, checker,
-        fixed, added.tool,
+        diagram, plant, scene_graph, arm, start, bodies, added.instances, added.model, checker,
+        fixed, added.tool, unknown_links,
     )  # fmt: skip
     _check_planes(workcell)
     return workcell

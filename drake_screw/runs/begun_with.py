@@ -14,7 +14,16 @@ def model_files(setup: Setup) -> dict[str, Path]:
     """The models and meshes that a run depends on."""
     other = setup.recorder.model_file
     models = {"model": setup.workcell.model_file}
-    return models | ({} if other is None else {"recorded_on": other}) | setup.meshes
+    return models | ({} if other is None else {"recorded_on": other}) | setup.srdf | setup.meshes
+
+
+def model_hashes(setup: Setup) -> dict[str, str]:
+    """Of what was read of each of `model_files`: of a model in xacro, what it stands for."""
+    other = setup.recorder.model
+    found = {"model": setup.workcell.model.hash}
+    found |= {} if other is None else {"recorded_on": other.hash}
+    others = setup.srdf | setup.meshes
+    return found | {name: file_hash(file) for name, file in others.items()}
 
 
 def check_models(setup: Setup, directory: RunDirectory) -> None:
@@ -23,9 +32,11 @@ def check_models(setup: Setup, directory: RunDirectory) -> None:
     Raises:
         RunDirectoryError: one has changed.
     """
+    now = model_hashes(setup)
     for name, file in model_files(setup).items():
-        if file_hash(file) != directory.record.hashes.get(name):
+        if now[name] != directory.record.hashes.get(name):
             what = "mesh" if name in setup.meshes else "robot model"
+            what = "SRDF" if name in setup.srdf else what
             raise RunDirectoryError(
                 f"the {what} {file} has changed since this run",
                 remedy="Put the file back as it was, or run the scenario again.",

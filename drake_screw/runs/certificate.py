@@ -29,6 +29,8 @@ class Certificate:
         collisions_checked: whether touching something counts as failing.
         clearance: m, that the robot keeps from all else and itself, where that is checked.
         joint_margin: rad (or m), that joints keep from their limits.
+        incomplete_shapes: links of the robot that lack collision shapes of its model; what touches
+            there is not seen.
         strategy: name of the bandit.
         guarantee: what it can be relied on for, in one sentence.
         claim: what is shown; of the weakest region where not certified.
@@ -71,6 +73,7 @@ class Certificate:
     delta_of_attempt: float | None = None
     clearance: float = 0.0
     joint_margin: float = 0.0
+    incomplete_shapes: tuple[str, ...] = ()
     freedoms: tuple[Freedom, ...] = ()
     approach: Literal["screw", "free"] = "screw"
     led_around: bool | None = None
@@ -124,7 +127,16 @@ class Certificate:
             f"This is of {self.regions} regions, with {self.demonstrations} "
             f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
             f"in each region. To succeed is to have a plan {within} the joint limits of the "
-            f"robot's model{collisions}.{self._way_there()}"
+            f"robot's model{collisions}.{self._unseen()}{self._way_there()}"
+        )
+
+    def _unseen(self) -> str:
+        if not self.collisions_checked or not self.incomplete_shapes:
+            return ""
+        links = ", ".join(self.incomplete_shapes)
+        return (
+            " What these links touch was seen in part or not at all, as collision shapes of theirs "
+            f"could not be had: {links}."
         )
 
     def _way_there(self) -> str:
@@ -209,6 +221,7 @@ def certificate(
         collisions_checked=setup.scenario.planner.collision,
         clearance=setup.scenario.planner.clearance,
         joint_margin=setup.scenario.planner.joint_margin,
+        incomplete_shapes=setup.workcell.model.incomplete,
         strategy=bandit.name,
         guarantee=bandit.guarantee,
         freedoms=freedoms(setup.scenario),

@@ -21,12 +21,11 @@ from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import RunDirectoryError, ScenarioError
-from drake_screw.files import file_hash
 from drake_screw.runs.begun_with import (
     check_models,
     check_parts,
     check_ways_around,
-    model_files,
+    model_hashes,
 )
 from drake_screw.runs.certificate import Certificate, certificate
 from drake_screw.runs.codec import FORMAT
@@ -222,7 +221,7 @@ def new_run(scenario: Scenario, output: PathLike | None = None, **parts: Unpack[
         passed_in=setup.passed_in,
         led_around=setup.leads_around,
         model=str(setup.workcell.model_file),
-        hashes={name: file_hash(file) for name, file in model_files(setup).items()},
+        hashes=model_hashes(setup),
         versions=versions(),
         started=now(),
         finished=None,

@@ -187,6 +187,9 @@ class PlannerBlock(Block):
     collision: bool = True
     """whether a plan fails along which the robot, or what it holds, touches itself, the table, an
     obstacle or an object; as published they are not looked at"""
+    incomplete_shapes: bool = False
+    """whether to look at `collision` although the robot lacks collision shapes, those of its model
+    whose meshes are missing or cannot be read; the certificate then names these links"""
     clearance: Annotated[Annotated[float, Field(ge=0.0, le=1.0)], METRES] = 0.0
     """distance that all those have to keep, where `collision` is looked at"""
     joint_margin: Annotated[Annotated[float, Field(ge=0.0, lt=3.0)], RADIANS] = 0.0

@@ -122,7 +122,11 @@ def _path(value: Any) -> Any:
 
 def _model(value: Any) -> Any:
     is_path = isinstance(value, str) and looks_like_path(value, MODEL_SUFFIXES)
-    return _absolute(value) if is_path else value
+    return _absolute(value) if is_path and "://" not in value else value
+
+
+def _address(value: Any) -> Any:
+    return _absolute(value) if isinstance(value, str) and value and "://" not in value else value
 
 
 def _nothing_is_empty(value: Any) -> Any:
@@ -135,7 +139,16 @@ ModelName = Annotated[
     Field(min_length=1),
     WithJsonSchema({"type": "string", "minLength": 1, "title": "a model's name or path"}),
 ]
-"""The name of a shipped model, or the path of one; a relative path becomes absolute."""
+"""The name of a shipped model, or the path of one, or its address in a package; a relative path
+becomes absolute."""
+
+Address = Annotated[
+    str,
+    BeforeValidator(_address),
+    Field(min_length=1),
+    WithJsonSchema({"type": "string", "minLength": 1, "title": "a path or address"}),
+]
+"""The path of a file, absolute likewise, or its address in a package."""
 
 Folder = Annotated[Path, BeforeValidator(_path)]
 """A path, absolute: a relative one is seen from the file, or the place, it is written in."""
@@ -148,4 +161,6 @@ Positive = Annotated[float, Field(gt=0)]
 Probability = Annotated[float, Field(gt=0, lt=1)]
 Option = bool | int | float | str
 Options = Annotated[dict[str, Option], BeforeValidator(_nothing_is_empty)]
+Packages = Annotated[dict[str, Folder], BeforeValidator(_nothing_is_empty)]
+"""Folders by the names of packages."""
 Angles = Annotated[dict[str, float], BeforeValidator(_nothing_is_empty)]

@@ -13,10 +13,13 @@ from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.scenario.values import (
     METRES,
     RADIANS,
+    Address,
     Angles,
     Interval,
     ModelName,
     Name,
+    Options,
+    Packages,
     Positive,
 )
 from drake_screw.tasks import AXES, Symmetry
@@ -24,7 +27,8 @@ from drake_screw.tasks import AXES, Symmetry
 
 class RobotBlock(Block):
     model: ModelName
-    """shipped model's name, or the path of a model file, relative to the scenario file"""
+    """shipped model's name, or the path of a model file, relative to the scenario file, or its
+    address in a package, `package://NAME/...`"""
     joints: tuple[str, ...]
     """names of the arm's joints, from base to end effector"""
     end_effector: str
@@ -40,6 +44,14 @@ class RobotBlock(Block):
     """where other joints rest; joints not named rest at the model's default"""
     tool: ToolBlock | None = None
     """what the end effector holds"""
+    packages: Packages = Field(default={})
+    """folders of packages that the model speaks of as `package://NAME/...` and that are not found
+    by themselves"""
+    xacro: Options = Field(default={})
+    """arguments of a model that is written in xacro"""
+    srdf: Address | None = None
+    """path of the SRDF file that says which links may touch one another, relative to the scenario
+    file, or its address in a package"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
@@ -53,7 +65,8 @@ class RobotBlock(Block):
 
 class RecordedOnBlock(Block):
     model: ModelName
-    """shipped model's name, or the path of a model file, relative to the scenario file"""
+    """shipped model's name, or the path of a model file, relative to the scenario file, or its
+    address in a package, `package://NAME/...`"""
     joints: tuple[str, ...]
     """names of that arm's joints, from base to end effector; the recordings have a column for
     each"""
@@ -65,6 +78,10 @@ class RecordedOnBlock(Block):
     """name of the frame in which the recordings have the objects' poses; its z points up"""
     parked: Annotated[Angles, RADIANS] = Field(default={})
     """where other joints rested; joints not named rested at the model's default"""
+    packages: Packages = Field(default={})
+    """folders of packages that the model speaks of"""
+    xacro: Options = Field(default={})
+    """arguments of a model that is written in xacro"""
 
     def broken_rules(self) -> Iterator[Problem]:
         remedy = "Its angles are in the recordings; leave it out."

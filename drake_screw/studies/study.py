@@ -16,6 +16,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
+from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.files import (
     csv_text,
@@ -206,9 +207,7 @@ def new_study(
         "seed": scenario.seed,
         "strategy": scenario.coverage.strategy,
         "model": str(model),
-        "hashes": {
-            name: file_hash(file) for name, file in ({"model": model} | setup.meshes).items()
-        },
+        "hashes": _hashes(setup),
         "led_around": setup.leads_around,
         "versions": versions(),
         "started": now(),
@@ -253,15 +252,27 @@ def open_study(path: PathLike) -> Study:
         )
     study = Study(path, load_stored_scenario(path / SCENARIO), record)
     setup = study.experiment.setup
-    for name, used in ({"model": setup.workcell.model_file} | setup.meshes).items():
-        if file_hash(used) != hashes.get(name):
+    now = _hashes(setup)
+    for name, used in _files(setup).items():
+        if now[name] != hashes.get(name):
             what = "mesh" if name in setup.meshes else "robot model"
+            what = "SRDF" if name in setup.srdf else what
             raise RunDirectoryError(
                 f"the {what} {used} has changed since this study began",
                 remedy="Put the file back as it was, or begin the study again.",
                 file=path,
             )
     return study
+
+
+def _files(setup: PlanningSetup) -> dict[str, Path]:
+    return {"model": setup.workcell.model_file} | setup.srdf | setup.meshes
+
+
+def _hashes(setup: PlanningSetup) -> dict[str, str]:
+    """Of what was read of the robot's model, and of the meshes around it."""
+    others = {name: file_hash(file) for name, file in (setup.srdf | setup.meshes).items()}
+    return {"model": setup.workcell.model.hash} | others
 
 
 def numbers_of_regions(text: str) -> tuple[int, ...]:

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 from drake_screw.demonstrations import Look
 from drake_screw.planning import Cause
-from drake_screw.robot.endless import drawn_range
+from drake_screw.screws.endless import drawn_range
 from drake_screw.typing import Array
 from drake_screw.visualization.palette import INK, OBJECT_COLORS, OUTCOME_COLORS, QUIET
 

@@ -9,7 +9,7 @@ from markupsafe import Markup, escape
 from matplotlib.colors import to_hex
 
 from drake_screw.planning import Cause
-from drake_screw.robot.endless import drawn_range
+from drake_screw.screws.endless import drawn_range
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import FAILED, Attempt

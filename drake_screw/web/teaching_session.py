@@ -16,9 +16,9 @@ from drake_screw.demonstrations import FaithfulConfig, Recording, read_recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
 from drake_screw.planning import Cause
-from drake_screw.robot.endless import drawn_range
 from drake_screw.runs.narration import place
 from drake_screw.screws import exp, log, pose
+from drake_screw.screws.endless import drawn_range
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import (
     Attempt,

@@ -60,7 +60,6 @@ def urdf_with(folder: Path, shape: str) -> Path:
         ("<ellipsoid><radii>0.1 nan 1</radii></ellipsoid>", "an ellipsoid with radii 0.1 nan 1"),
         (f"<drake:capsule {DRAKE}><radius>0</radius></drake:capsule>", "capsule with radius 0"),
         ("<cone><radius>1</radius><length>1</length></cone>", "a cone, which Drake leaves out"),
-        ("<mesh><uri>a.STL</uri></mesh>", "the mesh 'a.STL', of which Drake makes no convex hull"),
     ],
 )
 def test_a_shape_that_would_be_replaced_or_left_out_is_refused(
@@ -81,7 +80,6 @@ def test_a_shape_that_would_be_replaced_or_left_out_is_refused(
         ('<box size="0 0.1 0.1"/>', "a box with size 0 0.1 0.1"),
         ('<cylinder radius="0.1"/>', "a cylinder without length"),
         ('<drake:ellipsoid a="1" b="0" c="1"/>', "an ellipsoid with b 0"),
-        ('<mesh filename="package://arm/hand.dae"/>', "the mesh 'package://arm/hand.dae'"),
     ],
 )
 def test_a_shape_without_a_size_in_urdf_is_refused(

@@ -45,6 +45,7 @@ def stated_by(name, mu, rounds=(), scenario=None, led_around=None, **options):
         bandit=bandit,
         tree=None,
         regions=SimpleNamespace(K=3),
+        workcell=SimpleNamespace(model=SimpleNamespace(incomplete=())),
     )
     status = Status.CERTIFIED if verdict.certified else Status.INSUFFICIENT
     kept = [
@@ -172,6 +173,7 @@ def test_a_run_that_never_began_states_nothing() -> None:
         bandit=bandit,
         tree=None,
         regions=SimpleNamespace(K=3),
+        workcell=SimpleNamespace(model=SimpleNamespace(incomplete=())),
     )
     finished = Finished(Status.INSUFFICIENT, "no initial demonstration", None, ())
     stated = certificate(setup, finished)

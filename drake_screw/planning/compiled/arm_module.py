@@ -20,6 +20,7 @@ from types import ModuleType
 import llvmlite.binding  # type: ignore[import-untyped]
 import numba
 
+from drake_screw.files import cache_folder
 from drake_screw.planning import contract, outcomes
 from drake_screw.planning.compiled import crossing, inner, lanes, lowering, rows, step_code, trace
 from drake_screw.planning.compiled.expressions import Program
@@ -132,20 +133,3 @@ def mark_compiled(module: ModuleType) -> None:
 
 def _mark(module: ModuleType) -> Path:
     return Path(str(module.__file__)).with_suffix(".compiled")
-
-
-def cache_folder() -> Path:
-    """Where compiled code is kept: numba's cache folder if it has one, else the user's.
-
-    Where neither can be written to, a temporary folder, which is a new one in every process.
-    """
-    user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    for parent in (os.environ.get("NUMBA_CACHE_DIR") or user, user):
-        folder = Path(parent) / "drake_screw"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=folder):
-                return folder
-        except OSError:
-            continue
-    return Path(tempfile.mkdtemp(prefix="drake_screw_"))

@@ -47,7 +47,7 @@ from drake_screw.planning.contract import (
     RESIDUAL_LIMIT,
     Redundancy,
 )
-from drake_screw.robot.endless import is_endless
+from drake_screw.screws.endless import is_endless
 from drake_screw.typing import Array
 
 TABLEAU = (

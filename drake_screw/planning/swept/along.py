@@ -17,9 +17,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from drake_screw.files import cache_folder
 from drake_screw.planning.compiled import functions
 from drake_screw.planning.compiled import inner as inner_module
-from drake_screw.planning.compiled.arm_module import cache_folder
 from drake_screw.planning.compiled.inner import inner
 from drake_screw.planning.swept import bounds, cell, convex, motion, separation, simplex, sweep
 from drake_screw.planning.swept.cell import QUESTIONS

@@ -6,7 +6,7 @@ import numpy as np
 
 from drake_screw.planning.swept.along import Touches, say_if_it_takes_long, touches_along
 from drake_screw.planning.swept.cell import Cell, room_for
-from drake_screw.robot.endless import within_a_turn
+from drake_screw.screws.endless import within_a_turn
 from drake_screw.typing import Array
 
 SPACING = 0.1

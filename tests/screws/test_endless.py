@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from drake_screw.errors import ModelError
-from drake_screw.robot.endless import (
+from drake_screw.screws.endless import (
     brought_near,
     drawn_range,
     is_endless,

@@ -1,0 +1,175 @@
+"""A robot's model made ready for Drake: found, expanded, its meshes in formats that are read."""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from drake_screw.errors import ModelError
+from drake_screw.files import cache_folder, file_hash, write_text
+from drake_screw.robot.model_materials import mend_materials
+from drake_screw.robot.model_meshes import LeftOut, MeshesRead, make_absolute, read_meshes
+from drake_screw.robot.model_text import check_collision_shapes
+from drake_screw.robot.model_xml import model_xml, parse_model
+from drake_screw.robot.packages import ModelPlace
+from drake_screw.robot.xacro_text import SUFFIX, expand
+
+KINDS = {"robot": ".urdf", "sdf": ".sdf"}
+"""Suffixes that Drake knows models by, by their root element."""
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class ModelFile:
+    """A model as the user has it, and as Drake reads it.
+
+    Attributes:
+        file: the user's.
+        read: which Drake is to read: the same where nothing has to be changed.
+        hash: of what was read; that of the file's contents where Drake reads it as it is.
+        left_out: shapes whose meshes cannot be had.
+    """
+
+    file: Path
+    read: Path
+    hash: str
+    left_out: tuple[LeftOut, ...] = ()
+
+    @property
+    def incomplete(self) -> tuple[str, ...]:
+        """Links that lack a collision shape."""
+        return tuple(dict.fromkeys(s.link for s in self.left_out if s.role == "collision"))
+
+    @property
+    def collision_left_out(self) -> int:
+        """How many collision shapes are left out."""
+        return sum(s.role == "collision" for s in self.left_out)
+
+    @property
+    def looks_left_out(self) -> tuple[LeftOut, ...]:
+        """Shapes that are not shown."""
+        return tuple(s for s in self.left_out if s.role == "visual")
+
+
+def model_file(
+    place: ModelPlace, arguments: Mapping[str, object] | None = None, *, shapes: bool = True
+) -> ModelFile:
+    """Make a model ready for Drake.
+
+    What has to be changed in its text is changed in a copy in the cache folder.
+
+    Args:
+        place: where it is.
+        arguments: of a model in xacro.
+        shapes: whether its meshes matter; for kinematics alone they do not.
+
+    Raises:
+        ModelError: it cannot be found or expanded, has a collision shape that Drake would take for
+            another one, or speaks of a package that is not found.
+    """
+    file, arguments = place.file, arguments or {}
+    is_xacro = file.suffix.lower() == SUFFIX
+    if arguments and not is_xacro:
+        raise ModelError(
+            f"arguments for xacro ({', '.join(arguments)}), but the model is not written in xacro",
+            remedy=f"Leave `xacro` out, or name the {SUFFIX} file.",
+            file=file,
+        )
+    if not is_xacro and file.suffix.lower() not in KINDS.values():
+        return ModelFile(file, file, file_hash(file))
+    try:
+        text = expand(file, arguments, place.packages) if is_xacro else file.read_bytes()
+        root = parse_model(text)
+    except (ET.ParseError, OSError) as error:
+        if is_xacro:
+            raise ModelError(f"expanded, it is not XML: {error}", file=file) from error
+        return ModelFile(file, file, file_hash(file))
+    check_collision_shapes(root, file)
+    if is_xacro and root.tag not in KINDS:
+        raise ModelError(
+            f"expanded, it is a '{root.tag}' and no robot",
+            remedy="Name the file that describes the whole robot; files of macros alone do not.",
+            file=file,
+        )
+    original = model_xml(root)
+    meshes = read_meshes(root, file.parent, place.packages) if shapes else MeshesRead()
+    changed = _mend(root, place, shapes=shapes) if root.tag == "robot" else False
+    if not is_xacro and not meshes.changed and not changed:
+        return ModelFile(file, file, file_hash(file))
+    for shape in meshes.left_out:
+        _log.info("%s: %s shape left out: %s", file, shape.role, shape)
+    make_absolute(root, file.parent, place.packages)
+    suffix = KINDS.get(root.tag, file.suffix.lower())
+    hash = file_hash(file) if not is_xacro else hashlib.sha256(original.encode()).hexdigest()
+    missing = [(s.link, s.mesh, "") for s in meshes.left_out if s.role == "collision"]
+    if missing or meshes.converted:
+        told = [hash, *("\0".join(entry) for entry in (*missing, *meshes.converted))]
+        hash = hashlib.sha256("\n".join(told).encode()).hexdigest()
+    return ModelFile(file, _kept(model_xml(root), f"{_stem(file)}{suffix}"), hash, meshes.left_out)
+
+
+def check_shapes_of(file: Path) -> None:
+    """Refuse collision shapes of a model's file that directives add; see `check_collision_shapes`.
+
+    A file that is neither URDF nor SDF, or that cannot be parsed, is left to Drake.
+
+    Raises:
+        ModelError: there is one.
+    """
+    if file.suffix.lower() not in KINDS.values():
+        return
+    with suppress(ET.ParseError, OSError):
+        check_collision_shapes(parse_model(file.read_bytes()), file)
+
+
+def _mend(root: ET.Element, place: ModelPlace, *, shapes: bool) -> bool:
+    """Mend what Drake refuses a URDF for though it is of no matter; whether there was anything."""
+    changed = shapes and mend_materials(root, _has_file(place))
+    if not root.get("name"):
+        root.set("name", _stem(place.file))
+        changed = True
+    joints = {joint.get("name"): joint.get("type") for joint in root.iterfind("joint")}
+    for joint in root.iterfind("joint"):
+        mimic = joint.find("mimic")
+        if mimic is not None and joint.get("type") == "fixed":
+            joint.remove(mimic)
+            changed = True
+        elif mimic is not None and joints.get(mimic.get("joint")) in (None, "fixed"):
+            joint.remove(mimic)
+            changed = True
+            _log.warning(
+                "%s: joint '%s' is to follow '%s', which does not move; it is held instead",
+                place.file,
+                joint.get("name"),
+                mimic.get("joint"),
+            )
+    return changed
+
+
+def _has_file(place: ModelPlace) -> Callable[[str], bool]:
+    def has_file(address: str) -> bool:
+        try:
+            return place.packages.path(address, place.file.parent).is_file()
+        except ModelError:
+            return False
+
+    return has_file
+
+
+def _stem(file: Path) -> str:
+    return file.name.split(".")[0]
+
+
+def _kept(text: str, name: str) -> Path:
+    folder = cache_folder() / "models" / hashlib.sha256(text.encode()).hexdigest()[:32]
+    folder.mkdir(parents=True, exist_ok=True)
+    kept = folder / name
+    if not kept.is_file():
+        write_text(kept, text)
+    return kept
