@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
+from pydrake.geometry import Convex, GeometryId, Mesh, SceneGraphInspector
 
 from drake_screw.onboarding.arms import FoundArm
 from drake_screw.onboarding.hand_ik import Range
@@ -11,6 +14,7 @@ from drake_screw.onboarding.reading import Robot
 from drake_screw.onboarding.rectangles import Rectangle
 from drake_screw.robot import ScrewChain, TableConfig
 from drake_screw.robot.names import find_frame
+from drake_screw.typing import Array
 
 LOW_SHOULDER = 0.6
 """m. An arm whose shoulder is no higher above its base is taken to stand on the table."""
@@ -43,20 +47,29 @@ def stands_on_the_table(robot: Robot, arm: FoundArm, others: int, chain: ScrewCh
     for body in plant.GetBodiesWeldedTo(base):
         if body.index() == plant.world_body().index():
             continue
-        shapes = [
-            *plant.GetCollisionGeometriesForBody(body),
-            *plant.GetVisualGeometriesForBody(body),
-        ]
+        X_FB = X_WF @ body.EvalPoseInWorld(context)
+        shapes = plant.GetCollisionGeometriesForBody(body) or (
+            plant.GetVisualGeometriesForBody(body)
+        )
         for shape in shapes:
-            box = inspector.GetObbInGeometryFrame(shape)
-            if box is None:
-                continue
-            X_FS = X_WF @ body.EvalPoseInWorld(context) @ inspector.GetPoseInFrame(shape)
-            X_FB = X_FS @ box.pose()
-            down = np.abs(X_FB.rotation().matrix()[2]) @ box.half_width()
-            lowest = min(lowest, float(X_FB.translation()[2] - down))
+            corners = _corners(inspector, shape)
+            X_FS = X_FB @ inspector.GetPoseInFrame(shape)
+            lowest = min(lowest, float((X_FS @ corners.T)[2].min(initial=0.0)))
     alone = others == 0 and not arm.held
     return alone and chain.shoulder[2] <= LOW_SHOULDER and lowest >= -BELOW
+
+
+def _corners(inspector: SceneGraphInspector, shape: GeometryId) -> Array:
+    """(m, 3) m, points whose hull holds a shape, in its own frame."""
+    solid = inspector.GetShape(shape)
+    if isinstance(solid, Mesh | Convex):
+        hull = solid.GetConvexHull()
+        return np.array([hull.vertex(i) for i in range(hull.num_vertices())])
+    box = inspector.GetObbInGeometryFrame(shape)
+    if box is None:
+        return np.zeros((0, 3))
+    signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    return np.asarray((box.pose() @ (signs * box.half_width()).T).T)
 
 
 def best_height(chain: ScrewChain, within: Range, task: str) -> float:
