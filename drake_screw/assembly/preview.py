@@ -24,6 +24,7 @@ from drake_screw.assembly.preview_parts import (
 from drake_screw.assembly.sanity import (
     Covered,
     covered_by_obstacles,
+    looks_aside,
     missing_shapes,
     not_shown,
     touching_at_start,
@@ -81,6 +82,7 @@ class Preview:
         touching_at_start: pairs of bodies that touch where every plan starts; only where planning
             does not look at that.
         hints: what is likely to go wrong, a sentence each.
+        looks_aside: what is to be said of an end effector that does not point out of the hand.
     """
 
     scenario: str
@@ -120,6 +122,7 @@ class Preview:
     ignored_collisions: tuple[tuple[str, str], ...]
     touching_at_start: tuple[tuple[str, str], ...]
     hints: tuple[str, ...]
+    looks_aside: str | None = None
 
     def __str__(self) -> str:
         return "\n".join(f"{name:<10} {text}" for name, text in self._lines())
@@ -162,6 +165,8 @@ class Preview:
                 f"the farthest corner of the work area is {self.farthest_corner:.2f} m from the "
                 "shoulder; only an object held long reaches there",
             )
+        if self.looks_aside is not None:
+            yield "note", self.looks_aside
         yield from (("note", str(item)) for item in self.covered)
         if self.touching_at_start:
             both = " and ".join(f"'{a}' touches '{b}'" for a, b in self.touching_at_start)
@@ -256,6 +261,7 @@ def preview(scenario: Scenario) -> Preview:
         ignored_collisions=scenario.robot.ignore_collisions,
         touching_at_start=touching_at_start(setup.workcell),
         hints=hints(scenario, arm),
+        looks_aside=looks_aside(setup.workcell),
     )
 
 

@@ -96,6 +96,7 @@ class Recorder:
             (0.0,) * len(block.joints),
             block.base,
             block.parked,
+            end_effector_rotation=block.end_effector_rotation,
             packages=block.packages,
             xacro=block.xacro,
         )

@@ -8,6 +8,7 @@ import numpy as np
 
 from drake_screw.errors import ScenarioError
 from drake_screw.robot import Arm, ScrewChain, Workcell
+from drake_screw.robot.hand import angle_between, out_of_the_hand
 from drake_screw.robot.ignored import Pair, remedy_for
 from drake_screw.scenario.schema import Scenario
 from drake_screw.screws import pose
@@ -26,6 +27,8 @@ NUDGE = {"rad": 0.05, "m": 0.005}
 """How far inside of a limit it is recommended to start."""
 PLACES = 25
 """Along each axis of the work area, that are looked at for obstacles."""
+ASIDE = np.deg2rad(45.0)
+"""From which on an end effector's z axis clearly does not point out of the hand."""
 STANDS_IN = 1e-3
 """m, that an object must be in an obstacle; one that stands on it is not."""
 
@@ -273,4 +276,19 @@ def covered_by_obstacles(workcell: Workcell, area: WorkArea) -> tuple[Covered, .
         for i, obstacle in enumerate(workcell.obstacles)
         for j in range(k)
         if inside[i, j]
+    )
+
+
+def looks_aside(workcell: Workcell) -> str | None:
+    """What is to be said where the end effector's z axis clearly does not point out of the hand."""
+    plant, arm = workcell.plant, workcell.arm
+    context, inspector = plant.CreateDefaultContext(), workcell.scene_graph.model_inspector()
+    plant.SetPositions(context, arm.full_positions(workcell.start))
+    out, told_by = out_of_the_hand(plant, inspector, arm.joints, context)
+    angle = angle_between(arm.pose(workcell.start)[:3, 2], out)
+    if angle < ASIDE:
+        return None
+    return (
+        f"the z axis of '{arm.end_effector}' is {np.rad2deg(angle):.0f} degrees from what looks "
+        f"like out of the hand ({told_by}); robot.end_effector_rotation turns it"
     )

@@ -14,6 +14,7 @@ from drake_screw.robot import (
     TableConfig,
     ToolConfig,
 )
+from drake_screw.robot.parts import turned_frame
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.tasks import ObjectArea, WorkArea
@@ -32,6 +33,7 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         tool_config(scenario),
         velocity_limits=block.velocity_limits,
         ignore_collisions=block.ignore_collisions,
+        end_effector_rotation=block.end_effector_rotation,
         packages=block.packages,
         xacro=block.xacro,
         srdf=block.srdf,
@@ -43,7 +45,10 @@ def tool_config(scenario: Scenario) -> ToolConfig | None:
     block = scenario.robot.tool
     if block is None or block.shape is None:
         return None
-    frame = block.frame or scenario.robot.end_effector
+    robot = scenario.robot
+    turned = robot.end_effector_rotation is not None
+    own = turned_frame(robot.end_effector) if turned else robot.end_effector
+    frame = block.frame or own
     return ToolConfig(frame, placed_shape(block.shape), block.xyz, block.rpy, block.touches)
 
 

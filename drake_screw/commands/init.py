@@ -1,59 +1,184 @@
-"""``drake-screw init``: a scenario of one's own to begin with."""
+"""``drake-screw init``: a scenario of one's own to begin with, copied or made for a robot."""
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from drake_screw.commands.options import VerboseOption
-from drake_screw.commands.output import Output
+from drake_screw.commands.output import Output, check_writable
 from drake_screw.errors import DrakeScrewError, ScenarioError, unknown
 
-EXAMPLE = "drake-screw init pouring --output mine.yaml"
+if TYPE_CHECKING:
+    from drake_screw.onboarding.arms import FoundArm
+
+EXAMPLE = "drake-screw init my_arm.urdf --output mine.yaml"
 
 _SCHEMA = "# yaml-language-server: $schema="
 
 
 def init(
-    name: Annotated[
-        str, typer.Argument(metavar="NAME", help="A shipped scenario to begin with.")
+    robot: Annotated[
+        str,
+        typer.Argument(
+            metavar="ROBOT",
+            help="A robot model's file (URDF, SDF, MJCF or model directives), the name of a "
+            "shipped model, or that of a shipped scenario, to be copied.",
+        ),
     ] = "pouring",
     output: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Where to write it. Default: NAME.yaml, here."),
+        typer.Option(metavar="FILE", help="Where to write it. Default: ROBOT.yaml, here."),
     ] = None,
+    arm: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Which arm, of a robot that has several.")
+    ] = None,
+    task: Annotated[
+        Literal["pouring", "scooping"], typer.Option(help="What the robot is to do.")
+    ] = "pouring",
+    table_height: Annotated[
+        float | None,
+        typer.Option(
+            metavar="M", help="Height of the table over the robot's base. Default: found."
+        ),
+    ] = None,
+    preview: Annotated[
+        bool, typer.Option("--preview", help="Show the workcell in the browser.")
+    ] = False,
     verbose: VerboseOption = False,
 ) -> None:
     """Write a scenario of your own, to change.
 
-    It is a copy of a shipped one, in which every key is explained.
+    For a robot's model it finds the arm, its hand, a table, a start and a work area, and says what
+    it assumed; a picture of where the arm reaches lies beside the scenario. Of a shipped scenario
+    it writes a copy. Every key is explained.
     """
-    from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
-    from drake_screw.resources import SCENARIO_SUFFIXES, find_resource, list_resources
+    from drake_screw.resources import (
+        MODEL_SUFFIXES,
+        SCENARIO_SUFFIXES,
+        list_resources,
+        looks_like_path,
+    )
 
-    shipped = list_resources("scenarios", SCENARIO_SUFFIXES)
-    if name not in shipped:
-        message, remedy = unknown("scenario", name, "what is shipped", shipped)
-        raise ScenarioError(message, remedy=remedy)
-    file = output or Path(f"{name}.yaml")
+    scenarios = list_resources("scenarios", SCENARIO_SUFFIXES)
+    models = list_resources("models", MODEL_SUFFIXES)
+    given = {"--arm": arm, "--table-height": table_height, "--preview": preview or None}
+    if robot in scenarios:
+        for option, value in given.items():
+            if value is not None:
+                raise DrakeScrewError(
+                    f"{option} is for a robot's model, and '{robot}' is a shipped scenario",
+                    remedy=f"Leave it out, or give a model. Shipped models: {', '.join(models)}",
+                )
+        _copy(robot, output)
+        return
+    if robot not in models and not looks_like_path(robot, MODEL_SUFFIXES):
+        message, remedy = unknown("scenario", robot, "what is shipped", scenarios)
+        raise ScenarioError(
+            message, remedy=f"{remedy}. Or a model: {', '.join(models)}, or the path of a file."
+        )
+    name = Path(robot).name
+    for suffix in MODEL_SUFFIXES:
+        name = name.removesuffix(suffix)
+    file = _checked(output or Path(f"{name}.yaml"))
+    check_writable(file, "--output")
+    out = Output()
+    _make(robot, file, arm, task, table_height, preview, out)
+
+
+def _checked(file: Path) -> Path:
+    """A file that a scenario can be written to.
+
+    Raises:
+        DrakeScrewError: it is there already, or not the name of one.
+    """
+    from drake_screw.resources import SCENARIO_SUFFIXES
+
     if file.suffix not in SCENARIO_SUFFIXES:
         raise DrakeScrewError(
             "not the name of a scenario file", remedy=f"Name it {file.stem}.yaml, say.", file=file
         )
-    source = find_resource("scenarios", name, SCENARIO_SUFFIXES)
-    text = scenario_copy(source.read_text(encoding="utf-8"), source.parent)
     if file.exists():
         raise DrakeScrewError(
             "exists already; nothing is overwritten", remedy="Give another --output.", file=file
         )
-    with writing(file, WRITABLE_OUTPUT):
+    return file
+
+
+def _copy(name: str, output: Path | None) -> None:
+    from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
+    from drake_screw.resources import SCENARIO_SUFFIXES, find_resource
+
+    file = output or Path(f"{name}.yaml")
+    source = find_resource("scenarios", name, SCENARIO_SUFFIXES)
+    text = scenario_copy(source.read_text(encoding="utf-8"), source.parent)
+    with writing(_checked(file), WRITABLE_OUTPUT):
         write_text(file, text)
     out = Output()
     out.say(f"written: {file}; change it, then")
     out.say(f"  drake-screw check {file}")
     out.say(f"  drake-screw run {file}")
+
+
+def _make(
+    robot: str,
+    file: Path,
+    arm: str | None,
+    task: str,
+    table_height: float | None,
+    preview: bool,
+    out: Output,
+) -> None:
+    """Find a scenario for a robot, try it, write it with its picture, and say so."""
+    from drake_screw.onboarding import assumptions, design, write_scenario
+
+    found = design(
+        robot,
+        wanted_arm=arm,
+        choose=_ask if sys.stdin.isatty() else None,
+        task=task,
+        table_height=table_height,
+        say=out.say,
+    )
+    picture = write_scenario(found, file, f"drake-screw {' '.join(sys.argv[1:])}")
+    out.say("assumed:")
+    for line in assumptions(found):
+        out.say(f"  {line}")
+    out.say(f"written: {file}, and where the arm reaches: {picture}; change it, then")
+    out.say(f"  drake-screw check {file}")
+    out.say(f"  drake-screw run {file}")
+    if preview:
+        _show(file, out)
+
+
+def _ask(arms: Sequence[FoundArm]) -> str:
+    names = [arm.name for arm in arms]
+    for found in arms:
+        typer.echo(f"  {found.name}: {found.joints[0]} ... {found.joints[-1]}")
+    return str(typer.prompt("which arm", default=names[0]))
+
+
+def _show(file: Path, out: Output) -> None:
+    """The workcell in Meshcat, until Enter is pressed."""
+    from drake_screw.assembly.setup import Setup
+    from drake_screw.runs.pictures import make_scene
+    from drake_screw.scenario.loader import load_scenario
+    from drake_screw.visualization.lifetime import page_meshcat
+
+    setup = Setup(load_scenario(file))
+    meshcat = page_meshcat("localhost")
+    scene = make_scene(setup, meshcat)
+    scene.show_suggestion((setup.area.lower + setup.area.upper) / 2.0)
+    meshcat.Flush()
+    out.say(f"the workcell is at {meshcat.web_url()}")
+    if out.console.is_terminal:
+        with suppress(EOFError, KeyboardInterrupt):
+            out.console.input("the page stays until you press Enter ")
 
 
 def scenario_copy(text: str, folder: Path) -> str:

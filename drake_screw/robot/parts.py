@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 from pydrake.geometry import Box, Cylinder
-from pydrake.math import RigidTransform
+from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import ModelInstanceIndex, RigidBody, SpatialInertia
+from pydrake.multibody.tree import FixedOffsetFrame, ModelInstanceIndex, RigidBody, SpatialInertia
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.addresses import add_packages
@@ -22,7 +22,7 @@ from drake_screw.robot.base import fix_base, set_defaults, without_furniture
 from drake_screw.robot.directives import model_files
 from drake_screw.robot.mimic import follow, mimics_in
 from drake_screw.robot.model_file import ModelFile, check_shapes_of, model_file
-from drake_screw.robot.names import check_apart
+from drake_screw.robot.names import check_apart, find_frame
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
 from drake_screw.robot.packages import ModelPlace
 from drake_screw.robot.shapes import register
@@ -48,9 +48,21 @@ class RobotConfig:
     tool: ToolConfig | None = None
     velocity_limits: Mapping[str, float] = field(default_factory=dict)
     ignore_collisions: tuple[tuple[str, str], ...] = ()
+    end_effector_rotation: tuple[float, float, float] | None = None
     packages: Mapping[str, Path] = field(default_factory=dict)
     xacro: Mapping[str, object] = field(default_factory=dict)
     srdf: str | None = None
+
+    @property
+    def frame(self) -> str:
+        """The frame E in the plant: the end effector's, or that turned by its rotation."""
+        turned = self.end_effector_rotation is not None
+        return turned_frame(self.end_effector) if turned else self.end_effector
+
+
+def turned_frame(end_effector: str) -> str:
+    """The name of an end effector's frame once it is turned by `end_effector_rotation`."""
+    return f"{end_effector}_turned"
 
 
 @dataclass(frozen=True)
@@ -105,7 +117,7 @@ class RobotInPlant(NamedTuple):
         return Arm(
             self.plant,
             config.joints,
-            config.end_effector,
+            config.frame,
             parked=parked,
             robot=self.models,
             velocity_limits=config.velocity_limits,
@@ -140,6 +152,8 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
         follow(plant, models, mimics, joints=robot.joints, parked=robot.parked)
         held = fix_base(plant, models, robot.base, robot.joints, model=file.name.split(".")[0])
         instances = without_furniture(plant, models)
+        if robot.end_effector_rotation is not None:
+            _turn_end_effector(plant, models, robot)
     except ModelError as error:
         raise ModelError(error.message, remedy=error.remedy, file=error.file or file) from error
     tool = None if robot.tool is None else add_tool(plant, models, robot.tool)
@@ -158,6 +172,21 @@ def _read(parser: Parser, model: ModelFile) -> tuple[ModelInstanceIndex, ...]:
             file=model.file,
         )
     return models
+
+
+def _turn_end_effector(
+    plant: MultibodyPlant, models: Sequence[ModelInstanceIndex], robot: RobotConfig
+) -> None:
+    """Add the frame `robot.frame`, turned against the end effector's by roll, pitch and yaw."""
+    named = find_frame(plant, robot.end_effector, models)
+    X_NE = RigidTransform(RollPitchYaw(robot.end_effector_rotation), [0.0, 0.0, 0.0])
+    name = turned_frame(named.name())
+    if plant.HasFrameNamed(name, named.model_instance()):
+        raise ModelError(
+            f"the model has a frame '{name}', as the turned end effector would be called",
+            remedy="Take that frame as the end effector, without a rotation.",
+        )
+    plant.AddFrame(FixedOffsetFrame(name, named, X_NE))
 
 
 def add_surroundings(

@@ -36,6 +36,9 @@ class RobotBlock(Block):
     """names of the arm's joints, from base to end effector"""
     end_effector: str
     """name of the frame that the demonstrations move"""
+    end_effector_rotation: Annotated[tuple[float, float, float], RADIANS] | None = None
+    """roll, pitch and yaw by which that frame is turned, about its own origin, before it is used,
+    for a model that has none whose z axis points out of the hand; not turned if left out"""
     start: Annotated[tuple[float, ...], RADIANS]
     """joint angles from which every plan starts, in the order of `joints`"""
     base: str = "base"
@@ -96,6 +99,8 @@ class RecordedOnBlock(Block):
     each"""
     end_effector: str
     """name of that arm's frame which `robot.end_effector` stands for: same axes, same grip"""
+    end_effector_rotation: Annotated[tuple[float, float, float], RADIANS] | None = None
+    """roll, pitch and yaw by which that frame is turned first; not turned if left out"""
     base: str = "base"
     """name of the frame in which the recordings have the objects' poses; its z points up"""
     parked: Annotated[Angles, RADIANS] = Field(default={})

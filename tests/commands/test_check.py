@@ -29,3 +29,12 @@ def test_check_tells_where_it_would_ask(command) -> None:
     middle = "demonstrations={ask: densest, first: middle}"
     assert asks(middle) == "densest; in the middle first"
     assert asks(middle, "demonstrations.initial=0") == "densest"
+
+
+def test_an_end_effector_that_points_aside_is_noted(command) -> None:
+    _, out, _ = command("check", "pouring_iiwa")
+    assert "out of the hand" not in out
+    turned = "robot.end_effector_rotation=[0, 1.5708, 0]"
+    code, out, _ = command("check", "pouring_iiwa", "--set", turned)
+    assert code == 0
+    assert "'hand_turned' is 90 degrees from what looks like out of the hand" in out

@@ -1,0 +1,49 @@
+"""A robot model as it comes, read into a plant to be looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.planning import RobotDiagram, RobotDiagramBuilder
+
+from drake_screw.robot import RobotConfig
+from drake_screw.robot.base import WORLD
+from drake_screw.robot.directives import model_files
+from drake_screw.robot.mimic import mimics_in
+from drake_screw.robot.parts import add_robot
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A model with nothing around it, where it puts itself.
+
+    Attributes:
+        model: as it was asked for: a shipped name, or a path.
+        file: that it was read from.
+        diagram: of the finalized plant, which it keeps.
+        plant: that plant.
+        mimics: names of joints that follow another one.
+    """
+
+    model: str
+    file: Path
+    diagram: RobotDiagram
+    plant: MultibodyPlant
+    mimics: frozenset[str]
+
+
+def read_robot(model: str) -> Robot:
+    """Read a model.
+
+    Raises:
+        ModelError: there is no such file, or Drake cannot read it.
+    """
+    builder = RobotDiagramBuilder(time_step=0.0)
+    added = add_robot(builder.parser(), RobotConfig(model, (), "", (), base=WORLD))
+    files = model_files(added.model.read, builder.parser().package_map())
+    mimics = frozenset(mimic.follower for name, one in files for mimic in mimics_in(one, name))
+    plant: MultibodyPlant = builder.plant()
+    plant.Finalize()
+    return Robot(model, added.model.file, builder.Build(), plant, mimics)
