@@ -13,7 +13,9 @@ from drake_screw.acquisition import UsableLessons, random_suggestion
 from drake_screw.assembly.freedoms import Freedom, freedoms
 from drake_screw.assembly.hints import hints
 from drake_screw.assembly.kept import kept, named_recordings, teacher_recordings
+from drake_screw.assembly.preview_notes import notes
 from drake_screw.assembly.preview_parts import (
+    ASKED_FIRST,
     PreviewedArm,
     PreviewedObject,
     PreviewedObstacle,
@@ -35,7 +37,6 @@ from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
 from drake_screw.bandits.eprocess import EProcess
 from drake_screw.bandits.naive_pac import NaivePac, sample_size
 from drake_screw.bandits.spending import attempt_delta
-from drake_screw.planning import connection
 from drake_screw.scenario.schema import Scenario
 
 PROBE = 2_000
@@ -68,7 +69,7 @@ class Preview:
         recorded_on: the arm that recordings are of, where that is another.
         recordings_named: whether the scenario names recordings.
         ask: the rule by which the next demonstration is asked for.
-        first: where the first one is, "random" or "middle"; None where it is not asked for so.
+        first: where the first one is; None where it is not asked for so.
         budget: most demonstrations in total.
         farthest_corner: m, of the work area from the shoulder.
         assumed: what is taken for what the robot's model does not state, a line each.
@@ -152,39 +153,9 @@ class Preview:
         if self.recorded_on is not None:
             none = "none yet; recordings named in the scenario would be "
             yield "recorded", f"{'' if self.recordings_named else none}on {self.recorded_on}"
-        first = {
-            "random": "at a random place",
-            "middle": "in the middle",
-            "farthest": "at the corner farthest from the shoulder",
-        }
-        yield "asks", self.ask + (f"; {first[self.first]} first" if self.first else "")
+        yield "asks", self.ask + (f"; {ASKED_FIRST[self.first]} first" if self.first else "")
         yield "budget", f"{self.budget} demonstrations"
-        if self.farthest_corner > self.robot.reach:
-            yield (
-                "note",
-                f"the farthest corner of the work area is {self.farthest_corner:.2f} m from the "
-                "shoulder; only an object held long reaches there",
-            )
-        if self.looks_aside is not None:
-            yield "note", self.looks_aside
-        yield from (("note", str(item)) for item in self.covered)
-        if self.touching_at_start:
-            both = " and ".join(f"'{a}' touches '{b}'" for a, b in self.touching_at_start)
-            yield (
-                "note",
-                f"{both} at the start; collisions are left out here, but execute and export look "
-                "at them, and will find no plan",
-            )
-        yield from (("note", line) for line in (*self.assumed, *self.hints))
-        if self.unseen:
-            yield "note", "collision checks are incomplete; these shapes of the robot are missing:"
-            yield from (("", f"  {line}") for line in self.unseen)
-        if self.not_shown is not None:
-            yield "note", self.not_shown
-        if self.unknown_links:
-            yield "note", f"links that the robot's model lacks: {', '.join(self.unknown_links)}"
-        if self.lacks_ompl:
-            yield "note", connection.ABSENT
+        yield from notes(self)
         rate = self.plans_per_second
         if rate is None:
             why = f": {self.no_demonstration}" if self.no_demonstration else ""

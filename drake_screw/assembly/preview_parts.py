@@ -4,6 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+ASKED_FIRST = {
+    "random": "at a random place",
+    "middle": "in the middle",
+    "farthest": "at the corner farthest from the shoulder",
+}
+"""Where the first demonstration is asked for, in words."""
+
 
 @dataclass(frozen=True)
 class PreviewedArm:

@@ -48,4 +48,4 @@ def letting_touch(config: RobotConfig, pairs: tuple[Pair, ...]) -> RobotConfig:
             remedy="Mend the collision shapes of the model.",
             file=config.model,
         )
-    return replace(config, ignore_collisions=pairs)  # type: ignore[call-arg]
+    return replace(config, ignore_collisions=pairs)

@@ -230,10 +230,7 @@ class BatchPlanner:
         return self.plans([demonstration], np.asarray(X_WO)[None], q_start, [0], variant)[0]
 
     def _starts(self, q_start: Array) -> Array:
-        """(1 + S, n) the arm's start, and the configurations that a free approach sets out from.
-
-        Joints without limits set out from within half a turn of the start.
-        """
+        """(1 + S, n) the start, and the seeds of a free approach, by whole turns near it."""
         endless = is_endless(self.chain.lower, self.chain.upper)
         return np.concatenate([q_start[None], brought_near(self.seeds, q_start, endless)])
 
@@ -279,7 +276,8 @@ class BatchPlanner:
         self, columns: Columns, X_WO: Array, q_start: Array, order: Order | None, run: int
     ) -> list[Answers]:
         """The kernel's answers (m, C) for successive instances."""
-        self._warn_of_compiling(len(X_WO) * len(columns.X_OE))
+        if not self.compiled and len(X_WO) * len(columns.X_OE) > 0:
+            _LOG.info("compiling the planner for this arm, once; this takes a few seconds")
 
         def in_order(X_WO: Array) -> NDArray[np.int64]:
             assert order is not None
@@ -299,7 +297,3 @@ class BatchPlanner:
         )
         self.evaluations += EVALUATIONS_PER_STEP * sum(int(a.steps.sum()) for a in answers)
         return answers
-
-    def _warn_of_compiling(self, plans: int) -> None:
-        if not self.compiled and plans > 0:
-            _LOG.info("compiling the planner for this arm, once; this takes a few seconds")
