@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import logging
 import os
 from collections.abc import Sequence
 from functools import partial
@@ -27,8 +26,6 @@ from drake_screw.screws.endless import brought_near, is_endless
 from drake_screw.typing import Array
 
 EVALUATIONS_PER_STEP = 6
-
-_LOG = logging.getLogger(__name__)
 
 
 class BatchPlanner:
@@ -197,7 +194,7 @@ class BatchPlanner:
         failed = questions.failed_start(self.chain, q_start, (N,))
         if failed is not None:
             return stuck(q_start, failed, guides, angles)
-        self._warn_of_compiling(N)
+        self._kernel.tell_of_compiling()
         column = columns.first[which] + variant
         traced = self._kernel.trace(
             columns.X_OE,
@@ -276,8 +273,8 @@ class BatchPlanner:
         self, columns: Columns, X_WO: Array, q_start: Array, order: Order | None, run: int
     ) -> list[Answers]:
         """The kernel's answers (m, C) for successive instances."""
-        if not self.compiled and len(X_WO) * len(columns.X_OE) > 0:
-            _LOG.info("compiling the planner for this arm, once; this takes a few seconds")
+        if len(X_WO) * len(columns.X_OE) > 0:
+            self._kernel.tell_of_compiling()
 
         def in_order(X_WO: Array) -> NDArray[np.int64]:
             assert order is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -18,6 +19,8 @@ from drake_screw.planning.compiled.rows import LANES, Rows
 from drake_screw.planning.compiled.step_code import Settings
 from drake_screw.planning.compiled.trace import ALL, SUCCESSES, Trace, new_trace
 from drake_screw.planning.outcomes import Cause
+
+_LOG = logging.getLogger(__name__)
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -82,6 +85,11 @@ class Kernel:
     def compiled(self) -> bool:
         """Whether the arm's machine code is in the cache; if not, the first plan waits for it."""
         return arm_module.is_compiled(self._module)
+
+    def tell_of_compiling(self) -> None:
+        """Log that the first plan has to wait, if it has."""
+        if not self.compiled:
+            _LOG.info("compiling the planner for this arm, once; this takes a few seconds")
 
     def plan(
         self,
