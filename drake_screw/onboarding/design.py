@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from drake_screw.assembly.sanity import missing_shapes
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.onboarding.area import (
     LARGEST,
@@ -126,6 +127,14 @@ def design(
     say(f"arm '{arm.name}': {len(arm.joints)} joints, end effector '{hand.frame}'")
     bare = _config(robot, arm, hand, rest)
     alone = build_workcell(bare)
+    if missing := missing_shapes(alone):
+        raise ModelError(
+            "collision shapes of the robot cannot be had, so what touches there would not be seen:"
+            + "".join(f"\n  {line}" for line in missing),
+            remedy="Mend what is missing, or write the scenario by hand with incomplete_shapes: "
+            "true in planner.",
+            file=robot.file,
+        )
     chain = alone.arm.screw_chain()
     within = range_of(chain)
     touching = always_touching(alone)
