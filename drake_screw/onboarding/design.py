@@ -20,7 +20,7 @@ from drake_screw.onboarding.area import (
     verify,
 )
 from drake_screw.onboarding.arms import FoundArm, choose_arm, find_arms
-from drake_screw.onboarding.contacts import Pair, always_touching, letting_touch
+from drake_screw.onboarding.contacts import Pair, always_touching
 from drake_screw.onboarding.end_effector import FoundEndEffector, find_end_effector
 from drake_screw.onboarding.hand_ik import Range, range_of
 from drake_screw.onboarding.parked import parked
@@ -138,7 +138,7 @@ def design(
     chain = alone.arm.screw_chain()
     within = range_of(chain)
     touching = always_touching(alone)
-    bare = letting_touch(bare, touching)
+    bare = replace(bare, ignore_collisions=touching)
     standing = stands_on_the_table(robot, arm, len(arms) - 1, chain)
     top = _height(table_height, standing, chain, within, task)
     on_it = standing and abs(top) < 0.1
