@@ -14,6 +14,7 @@ from drake_screw.scenario.values import Interval
 from drake_screw.scenario.workcell_blocks import ObjectBlock
 
 CHANGES = [
+    "demonstrations.first=random",
     "objects.0.symmetry=null",
     "demonstrations.budget=2",
     "coverage.strategy=eprocess",

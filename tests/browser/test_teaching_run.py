@@ -28,6 +28,7 @@ LEAST = 120.0
 """s. Patience with a command, which has to start, compile and evaluate."""
 QUICK = [
     *("--set", "objects.0.symmetry=null"),
+    *("--set", "demonstrations.first=random"),
     *("--set", "demonstrations.budget=2"),
     *("--set", "regions.grid={x: 2, y: 2}"),
 ]

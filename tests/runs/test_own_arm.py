@@ -22,7 +22,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Model and scenario as printed on the page."""
     folder = tmp_path_factory.mktemp("own")
     for language, name in (("xml", "my_arm.urdf"), ("yaml", "my_arm.yaml")):
-        (text,) = re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(), re.DOTALL)
+        blocks = re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(), re.DOTALL)
+        text = next(block for block in blocks if re.search(r"name[:=] ?\"?my_arm", block))
         (folder / name).write_text(text)
     return folder
 

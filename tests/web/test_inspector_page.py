@@ -165,7 +165,7 @@ def test_rounds_and_instances_that_do_not_exist(finished_run) -> None:
 def test_a_run_without_rounds(copy) -> None:
     record = json.loads((copy / "run.json").read_text())
     (copy / "run.json").write_text(json.dumps(record | {"rounds": []}))
-    with pytest.raises(RunDirectoryError, match="no round of this run is finished"):
+    with pytest.raises(RunDirectoryError, match="this run ended before its first round"):
         open_run(copy).reader.check_round(None)
 
 
