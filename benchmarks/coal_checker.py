@@ -177,4 +177,4 @@ def coal_shape(shape: Shape) -> Any:
             for i in range(surface.num_vertices()):
                 points.append(np.asarray(surface.vertex(i), dtype=float))
             return coal.Convex.convexHull(points, False, "Qt")
-    raise NotImplementedError(f"no shape of Coal's for {shape}")
+    raise TypeError(f"no shape of Coal's for {shape}")

@@ -36,8 +36,7 @@ from drake_screw.robot import (
     Workcell,
     build_workcell,
 )
-from drake_screw.robot.packages import ModelPlace
-from drake_screw.robot.srdf import srdf_file
+from drake_screw.robot.ignored import srdf_of
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, WorkArea
 
@@ -99,10 +98,8 @@ class PlanningSetup:
     @property
     def srdf(self) -> dict[str, Path]:
         """The robot's SRDF file, by its place in the scenario, if it has one."""
-        if self.robot.srdf is None:
-            return {}
-        packages = ModelPlace(self.robot.model, self.robot.packages).packages
-        return {"robot.srdf": srdf_file(self.robot.srdf, packages)}
+        file = srdf_of(self.robot)
+        return {} if file is None else {"robot.srdf": file}
 
     @property
     def meshes(self) -> dict[str, Path]:

@@ -11,7 +11,6 @@ from drake_screw.robot import Arm, ScrewChain, Workcell
 from drake_screw.robot.hand import angle_between, out_of_the_hand
 from drake_screw.robot.ignored import Pair, remedy_for
 from drake_screw.scenario.schema import Scenario
-from drake_screw.screws import pose
 from drake_screw.tasks import WorkArea
 
 TOOL = 0.5
@@ -19,8 +18,6 @@ TOOL = 0.5
 
 LISTED = 6
 """Of shapes that are missing; a robot can have many."""
-FAR = 1e3
-"""m, where objects are that are to touch nothing."""
 ON_THE_LIMIT = 1e-6
 """rad or m. So near to a limit is on it."""
 NUDGE = {"rad": 0.05, "m": 0.005}
@@ -113,8 +110,7 @@ def touching_at_start(workcell: Workcell, clearance: float = 0.0) -> tuple[Pair,
 
     Objects are left out: where they stand is not known yet.
     """
-    away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, FAR]
-    return workcell.colliding_bodies(workcell.start, pose(np.eye(3), away), clearance)
+    return workcell.colliding_bodies(workcell.start, workcell.objects_away, clearance)
 
 
 def check_shapes(scenario: Scenario, workcell: Workcell) -> None:

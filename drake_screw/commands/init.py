@@ -120,7 +120,11 @@ def _copy(name: str, output: Path | None) -> None:
     with writing(_checked(file), WRITABLE_OUTPUT):
         write_text(file, text)
     out = Output()
-    out.say(f"written: {file}; change it, then")
+    _say_what_next(f"written: {file}", file, out)
+
+
+def _say_what_next(written: str, file: Path, out: Output) -> None:
+    out.say(f"{written}; change it, then")
     out.say(f"  drake-screw check {file}")
     out.say(f"  drake-screw run {file}")
 
@@ -149,9 +153,7 @@ def _make(
     out.say("assumed:")
     for line in assumptions(found):
         out.say(f"  {line}")
-    out.say(f"written: {file}, and where the arm reaches: {picture}; change it, then")
-    out.say(f"  drake-screw check {file}")
-    out.say(f"  drake-screw run {file}")
+    _say_what_next(f"written: {file}, and where the arm reaches: {picture}", file, out)
     if preview:
         _show(file, out)
 

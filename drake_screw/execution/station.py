@@ -35,7 +35,7 @@ from drake_screw.execution.joint_path import JointPathSource
 from drake_screw.execution.motors import motorise
 from drake_screw.execution.wiring import drive, measured_state, resting
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
-from drake_screw.robot.ignored import ignore, ignore_collisions, ignored_pairs
+from drake_screw.robot.ignored import let_links_touch
 from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.robot.tool import let_touch
 from drake_screw.typing import Array
@@ -131,8 +131,7 @@ def build_station(
     _ignore_contacts_of_objects(plant, scene_graph, added.instances)
     if robot.tool is not None and added.tool is not None:
         let_touch(plant, scene_graph, added.tool, robot.tool.touches)
-    ignore_collisions(plant, scene_graph, added.models, robot.ignore_collisions)
-    ignore(plant, scene_graph, added.models, ignored_pairs(robot))
+    let_links_touch(plant, scene_graph, added.models, robot)
     arm = _kinematics(robot)
     follower = builder.AddNamedSystem(
         "executor", ScrewPlanExecutor(arm) if follow_screws else JointPathSource(arm)

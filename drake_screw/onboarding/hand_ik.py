@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from drake_screw.robot import ScrewChain
+from drake_screw.screws import adjoint, shift
 from drake_screw.typing import Array
 
 STEPS = 30
@@ -112,16 +113,11 @@ def kinematics(chain: ScrewChain, q: Array) -> tuple[Array, Array]:
     """X_WE (N, 4, 4) and J_WE (N, 6, n), [w; v] at E's origin, of configurations (N, n)."""
     motions = chain.motions(q)
     X = motions[-1] @ chain.home
-    p_WE, J = X[:, :3, 3], np.empty((len(q), 6, chain.n))
-    for i, S in enumerate(chain.screws):
-        if i == 0:
-            w, v = np.broadcast_to(S[:3], p_WE.shape), np.broadcast_to(S[3:], p_WE.shape)
-        else:
-            R, p = motions[i - 1][:, :3, :3], motions[i - 1][:, :3, 3]
-            w = R @ S[:3]
-            v = R @ S[3:] + np.cross(p, w)
-        J[:, :3, i], J[:, 3:, i] = w, v + np.cross(w, p_WE)
-    return X, J
+    moved = [
+        chain.screws[0],
+        *(adjoint(E) @ S for E, S in zip(motions[:-1], chain.screws[1:], strict=True)),
+    ]
+    return X, np.stack([shift(S, X[:, :3, 3]) for S in moved], axis=-1)
 
 
 def _errors(X: Array, p: Array, z: Array) -> tuple[Array, Array, NDArray[np.bool_]]:

@@ -10,8 +10,6 @@ from pydrake.planning import RobotDiagram, RobotDiagramBuilder
 
 from drake_screw.robot import RobotConfig
 from drake_screw.robot.base import WORLD
-from drake_screw.robot.directives import model_files
-from drake_screw.robot.mimic import mimics_in
 from drake_screw.robot.parts import add_robot
 
 
@@ -42,8 +40,7 @@ def read_robot(model: str) -> Robot:
     """
     builder = RobotDiagramBuilder(time_step=0.0)
     added = add_robot(builder.parser(), RobotConfig(model, (), "", (), base=WORLD))
-    files = model_files(added.model.read, builder.parser().package_map())
-    mimics = frozenset(mimic.follower for name, one in files for mimic in mimics_in(one, name))
+    mimics = frozenset(mimic.follower for mimic in added.mimics)
     plant: MultibodyPlant = builder.plant()
     plant.Finalize()
     return Robot(model, added.model.file, builder.Build(), plant, mimics)

@@ -93,7 +93,7 @@ class Arm:
         self.velocity_limits, self.assumed_velocities = resolved(
             joints, velocity_limits or {}, self.joint_names
         )
-        self.endless = is_endless(self.lower, self.upper) & (np.array(self.units) == "rad")
+        self.endless = is_endless(self.lower, self.upper) & ~self.slides
         limited = np.isfinite(self.lower) & np.isfinite(self.upper)
         if not (limited | self.endless).all():
             raise ModelError(

@@ -53,6 +53,40 @@ def find_joint(plant: MultibodyPlant, name: str, robot: Instances | None = None)
     return _the_one("joint", name, _of(joints, robot), lambda j: j.num_positions() == 1)
 
 
+def find_body(
+    name: str,
+    bodies: Sequence[RigidBody],
+    *,
+    key: str,
+    kind: str,
+    many: str,
+    where: str,
+    choices: Sequence[RigidBody],
+) -> RigidBody:
+    """The body of that name, plain or scoped, among some that a key of the scenario speaks of.
+
+    Args:
+        name: as the scenario has it.
+        bodies: among which.
+        key: of the scenario, "robot.tool.touches".
+        kind, many, where: what it is, what several are, and where it is looked for, in messages.
+        choices: bodies that messages list.
+
+    Raises:
+        ModelError: there is none, or more than one.
+    """
+    matches = [body for body in bodies if called(body, name)]
+    if len(matches) == 1:
+        return matches[0]
+    if matches:
+        raise ModelError(
+            f"{key}: {len(matches)} {many} are called '{name}'",
+            remedy=f"Name one with its model: {', '.join(map(scoped, matches))}",
+        )
+    message, remedy = unknown(kind, name, where, [body.name() for body in choices])
+    raise ModelError(f"{key}: {message}", remedy=remedy)
+
+
 def called(part: Frame | Joint | RigidBody, name: str) -> bool:
     """Whether a part goes by a name: its own, or that with its model's before it."""
     return name in (part.name(), scoped(part))

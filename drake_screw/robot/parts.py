@@ -20,7 +20,7 @@ from drake_screw.robot.addresses import add_packages
 from drake_screw.robot.arm import Arm
 from drake_screw.robot.base import fix_base, set_defaults, without_furniture
 from drake_screw.robot.directives import model_files
-from drake_screw.robot.mimic import follow, mimics_in
+from drake_screw.robot.mimic import Mimic, follow, mimics_in
 from drake_screw.robot.model_file import ModelFile, check_shapes_of, model_file
 from drake_screw.robot.names import check_apart, find_frame
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
@@ -96,6 +96,7 @@ class RobotInPlant(NamedTuple):
             that directives add beside an arm, is none of it.
         tool: the body of what it holds, if that has a shape.
         held: names of its joints that were replaced by welds.
+        mimics: which of its joints follow another one.
     """
 
     config: RobotConfig
@@ -105,6 +106,7 @@ class RobotInPlant(NamedTuple):
     instances: tuple[ModelInstanceIndex, ...]
     tool: RigidBody | None
     held: tuple[str, ...]
+    mimics: tuple[Mimic, ...]
 
     def arm(self) -> Arm:
         """The arm, once the plant is finalized.
@@ -157,7 +159,7 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     except ModelError as error:
         raise ModelError(error.message, remedy=error.remedy, file=error.file or file) from error
     tool = None if robot.tool is None else add_tool(plant, models, robot.tool)
-    return RobotInPlant(robot, plant, model, models, instances, tool, held)
+    return RobotInPlant(robot, plant, model, models, instances, tool, held, mimics)
 
 
 def _read(parser: Parser, model: ModelFile) -> tuple[ModelInstanceIndex, ...]:

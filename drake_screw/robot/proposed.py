@@ -8,13 +8,9 @@ from typing import Literal
 import numpy as np
 
 from drake_screw.robot.workcell import Workcell
-from drake_screw.screws import pose
 from drake_screw.typing import Array
 
 Kind = Literal["start", "always", "never"]
-
-FAR_AWAY = 1e3
-"""m, where objects are that are to touch nothing."""
 
 TURN = np.pi
 """rad to either side, of joints that may turn farther, or without limits."""
@@ -86,24 +82,20 @@ def _reason(at_start: bool, share: float, count: int, never: bool) -> tuple[Kind
 
 def _own_pairs(workcell: Workcell) -> tuple[tuple[str, str], ...]:
     """Names of two links of the robot that could touch, as far as Drake looks at them."""
-    plant, tool = workcell.plant, workcell.tool
-    found = []
-    for pair in workcell.pairs:
-        bodies = [plant.get_body(index) for index in pair]
-        own = all(workcell.checker.IsPartOfRobot(body.index()) for body in bodies)
-        if own and not any(tool is not None and b.index() == tool.index() for b in bodies):
-            found.append((bodies[0].name(), bodies[1].name()))
-    return tuple(found)
+    tool = None if workcell.tool is None else workcell.tool.index()
+    return tuple(
+        workcell.touching(i)
+        for i, pair in enumerate(workcell.pairs)
+        if tool not in pair and all(map(workcell.checker.IsPartOfRobot, pair))
+    )
 
 
 def _touching(workcell: Workcell, q: Array, pairs: tuple[tuple[str, str], ...]) -> Array:
     """Whether the links of each pair touch, (m, pairs) bool, at q (m, n)."""
     number = {frozenset(pair): i for i, pair in enumerate(pairs)}
     touch = np.zeros((len(q), len(pairs)), dtype=bool)
-    k = len(workcell.objects)
-    away = pose(np.eye(3), np.arange(1.0, k + 1)[:, None] * [0.0, 0.0, FAR_AWAY])
     for i, each in enumerate(q):
-        for names in workcell.colliding_bodies(each, away):
+        for names in workcell.colliding_bodies(each, workcell.objects_away):
             place = number.get(frozenset(names))
             if place is not None:
                 touch[i, place] = True

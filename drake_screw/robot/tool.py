@@ -12,8 +12,8 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import BodyIndex, FrameIndex, RigidBody, SpatialInertia
 
-from drake_screw.errors import ModelError, unknown
-from drake_screw.robot.names import Instances, called, find_frame, scoped
+from drake_screw.errors import ModelError
+from drake_screw.robot.names import Instances, find_body, find_frame
 from drake_screw.robot.shapes import PlacedShape, register
 
 STEEL = np.array([0.36, 0.52, 0.70, 1.0])
@@ -76,17 +76,22 @@ def let_touch(
     """
     bodies = [plant.get_body(BodyIndex(i)) for i in range(1, plant.num_bodies())]
     others = [other for other in bodies if other.index() != body.index()]
-    mine = GeometrySet(plant.GetCollisionGeometriesForBody(body))
-    manager = scene_graph.collision_filter_manager()
     for name in names:
-        matches = [other for other in others if called(other, name)]
-        if not matches:
-            message, remedy = unknown("part", name, "the workcell", [o.name() for o in others])
-            raise ModelError(f"robot.tool.touches: {message}", remedy=remedy)
-        if len(matches) > 1:
-            raise ModelError(
-                f"robot.tool.touches: {len(matches)} parts of the workcell are called '{name}'",
-                remedy=f"Name one with its model: {', '.join(map(scoped, matches))}",
-            )
-        theirs = GeometrySet(plant.GetCollisionGeometriesForBody(matches[0]))
-        manager.Apply(CollisionFilterDeclaration().ExcludeBetween(mine, theirs))
+        other = find_body(
+            name,
+            others,
+            key="robot.tool.touches",
+            kind="part",
+            many="parts of the workcell",
+            where="the workcell",
+            choices=others,
+        )
+        leave_out(plant, scene_graph, body, other)
+
+
+def leave_out(plant: MultibodyPlant, scene_graph: SceneGraph, a: RigidBody, b: RigidBody) -> None:
+    """Have Drake never look at whether two bodies of a finalized plant touch."""
+    shapes = [GeometrySet(plant.GetCollisionGeometriesForBody(body)) for body in (a, b)]
+    scene_graph.collision_filter_manager().Apply(
+        CollisionFilterDeclaration().ExcludeBetween(*shapes)
+    )

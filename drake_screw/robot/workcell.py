@@ -22,7 +22,7 @@ from pydrake.planning import (
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.arm import Arm
-from drake_screw.robot.ignored import ignore, ignore_collisions, ignored_pairs
+from drake_screw.robot.ignored import let_links_touch
 from drake_screw.robot.model_file import ModelFile
 from drake_screw.robot.names import shown_name
 from drake_screw.robot.obstacles import ObstacleConfig
@@ -34,12 +34,15 @@ from drake_screw.robot.parts import (
     add_surroundings,
 )
 from drake_screw.robot.tool import let_touch
-from drake_screw.screws import quaternion_from_rotation
+from drake_screw.screws import pose, quaternion_from_rotation
 from drake_screw.typing import Array
 
 MANY = 100
 """Configurations from which on sharing them out among threads takes less time than it saves."""
 
+
+FAR = 1e3
+"""m, where objects are that are to touch nothing."""
 
 GRAZE = 1e-9
 """m, between bodies that touch: rounding, since to be at a distance of 0 is to collide."""
@@ -101,6 +104,11 @@ class Workcell:
             full[..., first : first + 4] = quaternion_from_rotation(X_WO[..., i, :3, :3])
             full[..., first + 4 : first + 7] = X_WO[..., i, :3, 3]
         return full
+
+    @property
+    def objects_away(self) -> Array:
+        """(k, 4, 4) poses of the objects where they touch nothing."""
+        return pose(np.eye(3), np.arange(1.0, len(self.objects) + 1)[:, None] * [0.0, 0.0, FAR])
 
     @cached_property
     def pairs(self) -> tuple[tuple[BodyIndex, BodyIndex], ...]:
@@ -210,8 +218,7 @@ def build_workcell(
     if robot.tool is not None and added.tool is not None:
         arm.held(robot.tool.frame)
         let_touch(plant, scene_graph, added.tool, robot.tool.touches)
-    ignore_collisions(plant, scene_graph, added.models, robot.ignore_collisions)
-    unknown_links = ignore(plant, scene_graph, added.models, ignored_pairs(robot))
+    unknown_links = let_links_touch(plant, scene_graph, added.models, robot)
     diagram = builder.Build()
     arm.owner = diagram
     checker = SceneGraphCollisionChecker(

@@ -39,9 +39,8 @@ class Stops:
     @classmethod
     def of(cls, arm: Arm, start: ArrayLike) -> Stops:
         """Those of an arm that starts from (n,) rad or m."""
-        slides = np.array([unit == "m" for unit in arm.units])
         short = np.minimum(SLIDE_MARGIN, SLIDE_PART * (arm.upper - arm.lower))
-        usual = np.where(slides, short, MARGIN)
+        usual = np.where(arm.slides, short, MARGIN)
         at_start = arm.margin(start)
         return cls(arm, np.where(at_start < usual, at_start / 2.0, usual))
 
