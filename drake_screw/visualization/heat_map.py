@@ -236,13 +236,16 @@ def _marker(marker: str, color: str, size: float, edge: str) -> dict[str, Any]:
 
 
 def _draw_demonstrations(ax: Axes, drawn: Cells, event: Round, text: bool) -> None:
+    """Numbered rings: whole also at the edge of the area, and cut off beyond it."""
     look = _marker("o", PAPER, MARK if text else 5.0, INK)
+    (y0, y1), (x0, x1) = (np.sort(ends()) + [-1e-9, 1e-9] for ends in (ax.get_xlim, ax.get_ylim))
     for number, demonstration in enumerate(event.demonstrations, start=1):
         x, y = demonstration.X_WO[drawn.object, :2, 3]
-        ax.plot(y, x, **look, zorder=7, gid=f"demonstration {number}")
+        clip = {"clip_on": not (y0 <= y <= y1 and x0 <= x <= x1)}
+        ax.plot(y, x, **look, **clip, zorder=7, gid=f"demonstration {number}")
         if text:
             style = {"ha": "center", "va": "center_baseline", "fontsize": 7.5, "zorder": 7.5}
-            ax.text(y, x, str(number), color=INK, fontweight="bold", clip_on=True, **style)
+            ax.text(y, x, str(number), color=INK, fontweight="bold", **clip, **style)
 
 
 def _draw_robot(ax: Axes, text: bool) -> None:

@@ -75,7 +75,7 @@ def draw_progress(
         ax.annotate("certified", (done[-1], place), (0, 9), textcoords="offset points", fontsize=8)
     ax.set_xlim(min(numbers) - 0.5, max(numbers) + 0.5)
     ax.set_ylim(0.0, 1.03)
-    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     ax.set_xlabel("round", fontsize=9, color=INK)
     ax.set_ylabel("failure probability", fontsize=9, color=INK)
     ax.tick_params(labelsize=8)

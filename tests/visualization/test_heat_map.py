@@ -126,6 +126,18 @@ def test_demonstrations_are_numbered_where_their_object_stood(ax, make_round, re
         np.testing.assert_allclose(label.get_position(), place[::-1])
 
 
+@pytest.mark.parametrize(("beyond", "clipped"), [(0.0, False), (0.01, True)])
+def test_a_demonstration_at_the_edge_is_drawn_whole_and_one_beyond_it_is_cut_off(
+    ax, make_round, regions, beyond, clipped
+) -> None:
+    event = make_round(regions, FAILURES, demonstrations=1)
+    event.demonstrations[0].X_WO[0, :2, 3] = regions.area.upper[0, :2] + beyond
+    draw_heat_map(ax, event, regions)
+    (ring,) = [line for line in ax.lines if line.get_gid() == "demonstration 1"]
+    (label,) = [text for text in ax.texts if text.get_text() == "1"]
+    assert (ring.get_clip_on(), label.get_clip_on()) == (clipped, clipped)
+
+
 def test_instances_are_drawn_by_cause(ax, make_round, regions) -> None:
     event = make_round(regions, FAILURES)
     draw_heat_map(ax, event, regions)

@@ -29,6 +29,15 @@ def test_the_line_is_the_largest_estimate_of_each_round(events) -> None:
     assert "certified" in [t.get_text() for t in ax.texts]
 
 
+def test_rounds_are_counted_in_whole_numbers_be_it_a_single_one(events) -> None:
+    for count in (1, 2, 4):
+        ax = Figure().add_subplot()
+        draw_progress(ax, events[:count])
+        lower, upper = ax.get_xlim()
+        ticks = [tick for tick in ax.get_xticks() if lower <= tick <= upper]
+        assert ticks == list(range(1, count + 1))
+
+
 def test_regions_without_samples_do_not_count(make_round, regions) -> None:
     samples = [10, 10, 0, 0, 0, 0]
     ax = Figure().add_subplot()
