@@ -45,6 +45,8 @@ SHAPES = {
     Cause.NOT_TRIED: ("D", 3.0),
 }
 GRID = "#b9b4c6"
+EDGE = np.array([-1e-9, 1e-9])
+"""m, that the numbers of a place at the edge of the area may be beyond it by rounding."""
 
 
 def draw_heat_map(
@@ -238,7 +240,7 @@ def _marker(marker: str, color: str, size: float, edge: str) -> dict[str, Any]:
 def _draw_demonstrations(ax: Axes, drawn: Cells, event: Round, text: bool) -> None:
     """Numbered rings: whole also at the edge of the area, and cut off beyond it."""
     look = _marker("o", PAPER, MARK if text else 5.0, INK)
-    (y0, y1), (x0, x1) = (np.sort(ends()) + [-1e-9, 1e-9] for ends in (ax.get_xlim, ax.get_ylim))
+    (y0, y1), (x0, x1) = (np.sort(ends) + EDGE for ends in (ax.get_xlim(), ax.get_ylim()))
     for number, demonstration in enumerate(event.demonstrations, start=1):
         x, y = demonstration.X_WO[drawn.object, :2, 3]
         clip = {"clip_on": not (y0 <= y <= y1 and x0 <= x <= x1)}
