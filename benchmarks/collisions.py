@@ -20,14 +20,16 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from coal_checker import CoalChecker
+from drake_agreement import agreement, depth, list_depths, report_agreement
 from joint_paths import Noted, Spacing
 from mesh_arm import mesh_arm
 from task import TASKS, Task, load_task
@@ -39,11 +41,8 @@ from drake_screw.robot import Workcell
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.typing import Array
 
-APART, CLOSE = 10e-3, 2e-3
-"""m, of travel between configurations that Drake is asked about."""
-
-BATCH = 512
-"""Instances at a time whose paths are noted."""
+APART = 10e-3
+"""m, of travel between configurations that the other checkers are asked about."""
 
 
 def best_time(call: Callable[[], Any], repeats: int) -> float:
@@ -90,7 +89,7 @@ def paths_of(task: Task, workcell: Workcell, X_WO: Array) -> list[tuple[Array, A
     planner = BatchPlanner(task.arm.screw_chain()).checked(checker)
     planner.all_outcomes(task.demonstrations, X_WO, task.q_start)
     return [
-        (points(steps[first[i] : first[i + 1]]), X)
+        (points(steps[first[i] : first[i + 1]])[0], X)
         for steps, first, objects, _ in checker.noted
         for i, X in enumerate(objects)
     ]
@@ -139,55 +138,8 @@ def beside_others(
     return seconds, {**said, "differ": differ}
 
 
-def agreement(task: Task, workcell: Workcell, count: int, seed: int) -> dict[str, Any]:
-    """Verdicts on plans that keep the limits, beside Drake every 2 mm of travel.
-
-    Of a plan that touches something Drake is asked at the place first; only where it does not
-    agree, all along.
-    """
-    checker, rng = Noted(workcell), np.random.default_rng(seed)
-    points = Spacing(checker, CLOSE)
-    planner = BatchPlanner(task.arm.screw_chain()).checked(checker)
-    said = {"plans": 0, "touch": 0, "configurations": 0}
-    missed: list[dict[str, Any]] = []
-    unconfirmed: list[dict[str, Any]] = []
-    while said["plans"] < count:
-        checker.noted.clear()
-        X_WO = task.instances(BATCH, rng)
-        planner.all_outcomes(task.demonstrations, X_WO, task.q_start)
-        for steps, first, objects, found in checker.noted:
-            kept = rng.permutation(len(objects))[: max(1, len(objects) // 8)]
-            for i in kept[: count - said["plans"]]:
-                said["plans"] += 1
-                said["touch"] += int(found.touches[i])
-                X, own = objects[i], steps[first[i] : first[i + 1]]
-                if found.touches[i] and workcell.collides(found.q[i : i + 1], X)[0]:
-                    continue
-                q = points(own)
-                said["configurations"] += len(q)
-                hits = np.flatnonzero(workcell.collides(q, X))
-                if found.touches[i] and len(hits) == 0:
-                    unconfirmed.append(depth(workcell, found.q[i], X))
-                elif not found.touches[i] and len(hits):
-                    worst = min((depth(workcell, q[k], X) for k in hits), key=lambda d: d["m"])
-                    missed.append(worst | {"configurations": len(hits)})
-    return {**said, "missed": missed, "unconfirmed": unconfirmed}
-
-
-def depth(workcell: Workcell, q: Array, X_WO: Array) -> dict[str, Any]:
-    """The least signed distance in m at q (n,) by Drake, and the bodies it is of."""
-    near = workcell.checker.CalcRobotClearance(workcell.positions(q, X_WO), 0.01)
-    distances = np.asarray(near.distances())
-    if len(distances) == 0:
-        return {"m": float("nan"), "bodies": []}
-    k = int(distances.argmin())
-    bodies = near.robot_indices()[k], near.other_indices()[k]
-    names = [workcell.name(body) for body in bodies]
-    return {"m": float(distances[k]), "bodies": names}
-
-
-def measure(name: str, arguments: argparse.Namespace) -> dict[str, Any]:
-    """All that is asked about one task."""
+def measure(name: str, arguments: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """All that is asked about one task, as far as it is known."""
     task = load_task(name, arguments.demonstrations, None, arguments.limit)
     setup = Setup(load_scenario(name))
     workcell, rng = setup.workcell, np.random.default_rng(arguments.seed)
@@ -213,18 +165,20 @@ def measure(name: str, arguments: argparse.Namespace) -> dict[str, Any]:
             ratio = ratio_of(result["meshes"][what], result[what])
             print(f"  {what.replace('_', ' ')}, meshes to primitives: {ratio:.2f}")
     if arguments.agreement:
-        result["agreement"] = found = agreement(
-            task, workcell, arguments.agreement, arguments.seed + 1
-        )
-        print(
-            f"  {found['plans']:,} plans beside Drake every {1e3 * CLOSE:g} mm: "
-            f"{found['touch']:,} touch something, {len(found['missed'])} that Drake finds are "
-            f"missed, {len(found['unconfirmed'])} it does not find "
-            f"({found['configurations']:,} configurations)"
-        )
-        for kind in ("missed", "unconfirmed"):
-            list_depths(kind, found[kind])
-    return result
+        began = time.monotonic()
+        for found in agreement(task, workcell, arguments.agreement, arguments.seed + 1):
+            result["agreement"] = found
+            print(
+                f"\r  {name}: {found['plans']:,} of {arguments.agreement:,} plans beside Drake, "
+                f"{time.monotonic() - began:,.0f} s",
+                end="",
+                file=sys.stderr,
+                flush=True,
+            )
+            yield result
+        print(file=sys.stderr)
+        report_agreement(found)
+    yield result
 
 
 def ratio_of(ours: Any, theirs: Any) -> float:
@@ -259,12 +213,6 @@ def report(name: str, result: dict[str, Any]) -> None:
         list_depths("differ", said["differ"])
 
 
-def list_depths(kind: str, found: Sequence[dict[str, Any]]) -> None:
-    """Print what `depth` says of some configurations."""
-    for one in found:
-        print(f"    {kind}: {1e3 * one['m']:.4f} mm, {' and '.join(one['bodies'])}")
-
-
 def main() -> None:
     """Measure, print a table."""
     parser = argparse.ArgumentParser(
@@ -283,9 +231,10 @@ def main() -> None:
     arguments = parser.parse_args()
     results = {}
     for name in arguments.tasks:
-        results[name] = measure(name, arguments)
-        if arguments.json:
-            arguments.json.write_text(json.dumps(results, indent=1) + "\n")
+        for so_far in measure(name, arguments):
+            results[name] = so_far
+            if arguments.json:
+                arguments.json.write_text(json.dumps(results, indent=1) + "\n")
 
 
 if __name__ == "__main__":

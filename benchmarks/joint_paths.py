@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from drake_screw.planning.compiled.trace import dense_output
@@ -55,8 +56,11 @@ class Spacing:
     checker: SweptChecker
     spacing: float
 
-    def __call__(self, steps: Array) -> Array:
-        """Points (m, n) of the steps (t, 5, n) of a path, its ends among them."""
+    def __call__(self, steps: Array) -> tuple[Array, Array]:
+        """Points (m, n) of the steps (t, 5, n) of a path, its ends among them; travel (m,) so far.
+
+        A point of a shape travels no farther between two of them than the difference, in m.
+        """
         motion = np.abs(steps[:, 1] - steps[:, 0]).sum(axis=1) + np.abs(steps[:, 4]).sum(axis=1)
         parts = 2 + (PARTS * motion / self.spacing).astype(np.int64)
         step = np.repeat(np.arange(len(steps)), parts)
@@ -65,15 +69,31 @@ class Spacing:
         gone = np.concatenate([[0.0], np.cumsum(self._travel(q))])
         number = np.floor(gone / self.spacing).astype(np.int64)
         kept = np.flatnonzero(np.diff(number, append=number[-1] + 1))
-        return q[np.union1d([0], kept)]
+        kept = np.union1d([0], kept)
+        return q[kept], gone[kept]
 
     def _travel(self, q: Array) -> Array:
         """How far (m - 1,) in m a point of any shape goes from one of q (m, n) to the next."""
         cell, chain = self.checker.cell, self.checker.workcell.arm.screw_chain()
-        E = chain.motions(q)
-        longest = np.zeros(len(q) - 1)
-        for joint, reach, p in zip(cell.moved_joint, cell.moved_reach, cell.centers.T, strict=True):
-            points = p + reach * np.eye(3)
-            at = points @ E[joint, :, :3, :3].transpose(0, 2, 1) + E[joint, :, None, :3, 3]
-            longest = np.maximum(longest, np.linalg.norm(np.diff(at, axis=0), axis=-1).max(axis=1))
-        return longest
+        points = cell.centers.T[:, None] + cell.moved_reach[:, None, None] * np.eye(3)
+        return _longest(chain.motions(q), cell.moved_joint, points)
+
+
+@njit(error_model="numpy")
+def _longest(E, joint, points):  # type: ignore[no-untyped-def]
+    """The longest way (N - 1,) of points (M, 3, 3) that joints move, by E (n, N, 4, 4)."""
+    longest = np.zeros(E.shape[1] - 1)
+    for m in range(len(joint)):
+        for k in range(3):
+            x, y, z = points[m, k]
+            before = np.zeros(3)
+            for i in range(E.shape[1]):
+                way = 0.0
+                for axis in range(3):
+                    a = E[joint[m], i, axis]
+                    at = a[0] * x + a[1] * y + a[2] * z + a[3]
+                    way += (at - before[axis]) ** 2
+                    before[axis] = at
+                if i > 0:
+                    longest[i - 1] = max(longest[i - 1], way**0.5)
+    return longest
