@@ -3,7 +3,8 @@
     python benchmarks/any_robot.py [ROBOT ...] [--folder DIR] [--json FILE]
 
 Models are those of the package example-robot-data (PyPI; it brings its files and is large), or of
-DIR, the folder that has `panda_description` and the like in it. Each robot's scenario is what
+DIR, the folder that has `panda_description` and the like in it; there may be those of Fetch
+(fetch_ros) and Gen3 (ros2_kortex) beside them. What is not there is left out. Each robot's scenario is what
 `drake-screw init` makes of the model as it comes, without a question answered, with the simulated
 teacher; a plan in each region is executed. Prints a table in Markdown.
 """
@@ -17,22 +18,24 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-ROBOTS = {
+ROBOTS: dict[str, tuple[str, ...]] = {
     "panda": ("Franka Panda", "panda_description/urdf/panda.urdf"),
     "ur5": ("UR5", "ur_description/urdf/ur5_robot.urdf"),
     "ur10": ("UR10", "ur_description/urdf/ur10_robot.urdf"),
     "xarm7": ("xArm 7", "xarm_description/urdf/xarm7.urdf"),
     "jaco": ("Kinova Jaco", "kinova_description/robots/kinova.urdf"),
+    "gen3": ("Kinova Gen3", "kortex_description/robots/gen3.xacro", "--xacro", "dof=7"),
     "z1": ("Unitree Z1", "z1_description/urdf/z1.urdf"),
+    "fetch": ("Fetch, lift held", "fetch_description/robots/fetch.urdf"),
     "baxter": ("Baxter", "baxter_description/urdf/baxter.urdf"),
     "tiago": ("Tiago", "tiago_description/robots/tiago_no_hand.urdf"),
     "pr2": ("PR2", "pr2_description/urdf/pr2.urdf"),
 }
-"""What they are called, and where their models are."""
+"""What they are called, where their models are, and what `init` is told besides."""
 
 DATA = Path("share") / "example-robot-data" / "robots"
 """Below where that package is installed."""
@@ -62,19 +65,19 @@ def command(folder: Path, *arguments: str) -> tuple[int, str, float]:
     return done.returncode, done.stdout, time.perf_counter() - began
 
 
-def tried(model: Path, folder: Path) -> dict[str, Any]:
+def tried(model: Path, said: Sequence[str], folder: Path) -> dict[str, Any]:
     """What becomes of a model: `failed` has the command that ended with an error, and its words."""
     found: dict[str, Any] = {"model": str(model)}
     for name, arguments in (
-        ("init", (str(model), "--output", "mine.yaml")),
+        ("init", (str(model), *said, "--output", "mine.yaml")),
         ("check", ("mine.yaml", "--json", "check.json")),
         ("run", ("mine.yaml", "--output", "mine", "--json", "run.json")),
         ("execute", ("mine", "--per-region", "1", "--json", "execute.json")),
     ):
-        code, said, seconds = command(folder, name, *arguments)
+        code, printed, seconds = command(folder, name, *arguments)
         found[f"{name}_seconds"] = seconds
         if code != 0:
-            return found | {"failed": name, "said": said[-2000:]}
+            return found | {"failed": name, "said": printed[-2000:]}
     for name in ("check", "run", "execute"):
         found[name] = json.loads((folder / f"{name}.json").read_text())
     return found
@@ -97,11 +100,15 @@ def row(name: str, found: dict[str, Any]) -> str:
     )
 
 
-def table(robots: dict[str, tuple[str, Path]]) -> Iterator[tuple[str, dict[str, Any], str]]:
-    """Key, findings and row of each robot; its name and model's file by key."""
-    for key, (name, model) in robots.items():
+def table(folder: Path, robots: Iterable[str]) -> Iterator[tuple[str, dict[str, Any], str]]:
+    """Key, findings and row of each robot whose model is in the folder."""
+    for key in robots:
+        name, file, *said = ROBOTS[key]
+        if not (folder / file).is_file():
+            print(f"{name} is left out: there is no {folder / file}", file=sys.stderr)
+            continue
         with tempfile.TemporaryDirectory() as scratch:
-            found = tried(model, Path(scratch))
+            found = tried(folder / file, said, Path(scratch))
         yield key, found, row(name, found)
 
 
@@ -119,14 +126,12 @@ def main() -> None:
         parser.error("no models: pip install example-robot-data, or give --folder")
     if unknown := [key for key in arguments.robots if key not in ROBOTS]:
         parser.error(f"no robot {', '.join(unknown)}; there are {', '.join(ROBOTS)}")
-    chosen = {key: ROBOTS[key] for key in arguments.robots or ROBOTS}
     print(
         "| robot | arm | certificate, demonstrations | executed | plans/s "
         "| seconds: init + check + run + execute |\n|---|---|---|---|---|---|"
     )
     results = {}
-    robots = {key: (name, folder.resolve() / file) for key, (name, file) in chosen.items()}
-    for key, found, line in table(robots):
+    for key, found, line in table(folder.resolve(), arguments.robots or ROBOTS):
         print(line, flush=True)
         results[key] = found
         if arguments.json:

@@ -78,7 +78,9 @@ def _missing(kind: Kind, text: str, suffixes: Sequence[str]) -> DrakeScrewError:
         guess = os.path.join(folder, beside) if beside else nearest(stem, shipped)
         message = f"no {'file' if looks_like_path(text, suffixes) else singular} '{text}'"
     hint = f"Did you mean '{guess}'? " if guess else ""
-    remedy = f"{hint}{listed} Or give the path of a {suffixes[0]} file."
+    *others, last = suffixes
+    either = f"{', '.join(others)} or {last}" if others else last
+    remedy = f"{hint}{listed} Or give the path of a {either} file."
     return _ERRORS[kind](message, remedy=remedy)
 
 

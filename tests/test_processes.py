@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from functools import partial
 
@@ -53,3 +54,17 @@ def test_a_killed_process_is_told_with_a_remedy() -> None:
     with pytest.raises(WorkerLost, match="was killed") as error:
         list(share_out(end, range(4), build=partial(tool, 0), workers=2))
     assert "--workers" in str(error.value)
+
+
+def warns(tool: list[int], job: int) -> int:
+    logger = logging.getLogger("drake")
+    logger.warning("a link has no mass")
+    logger.error("the model cannot be read")
+    return job
+
+
+def test_what_drake_warns_of_is_not_said_again_by_each_process(capfd) -> None:
+    list(share_out(warns, range(4), build=partial(tool, 0), workers=2))
+    said = capfd.readouterr().err
+    assert "cannot be read" in said
+    assert "no mass" not in said

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -16,6 +16,7 @@ from drake_screw.errors import DrakeScrewError, ScenarioError, unknown
 
 if TYPE_CHECKING:
     from drake_screw.onboarding.arms import FoundArm
+    from drake_screw.robot import RobotConfig
 
 EXAMPLE = "drake-screw init my_arm.urdf --output mine.yaml"
 
@@ -27,8 +28,9 @@ def init(
         str,
         typer.Argument(
             metavar="ROBOT",
-            help="A robot model's file (URDF, SDF, MJCF or model directives), the name of a "
-            "shipped model, or that of a shipped scenario, to be copied.",
+            help="A robot model's file (URDF, SDF, MJCF, xacro or model directives) or address "
+            "(package://...), the name of a shipped model, or that of a shipped scenario, to be "
+            "copied.",
         ),
     ] = "pouring",
     output: Annotated[
@@ -47,6 +49,24 @@ def init(
             metavar="M", help="Height of the table over the robot's base. Default: found."
         ),
     ] = None,
+    package: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=DIR", help="Where a package of the model is. May be repeated."),
+    ] = None,
+    xacro: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help="An argument of xacro. May be repeated."),
+    ] = None,
+    srdf: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="SRDF file that says which links may touch."),
+    ] = None,
+    incomplete_shapes: Annotated[
+        bool,
+        typer.Option(
+            "--incomplete-shapes", help="Go on where collision shapes of the robot cannot be had."
+        ),
+    ] = False,
     preview: Annotated[
         bool, typer.Option("--preview", help="Show the workcell in the browser.")
     ] = False,
@@ -67,7 +87,15 @@ def init(
 
     scenarios = list_resources("scenarios", SCENARIO_SUFFIXES)
     models = list_resources("models", MODEL_SUFFIXES)
-    given = {"--arm": arm, "--table-height": table_height, "--preview": preview or None}
+    given = {
+        "--arm": arm,
+        "--table-height": table_height,
+        "--package": package,
+        "--xacro": xacro,
+        "--srdf": srdf,
+        "--incomplete-shapes": incomplete_shapes or None,
+        "--preview": preview or None,
+    }
     if robot in scenarios:
         for option, value in given.items():
             if value is not None:
@@ -88,7 +116,45 @@ def init(
     file = _checked(output or Path(f"{name}.yaml"))
     check_writable(file, "--output")
     out = Output()
-    _make(robot, file, arm, task, table_height, preview, out)
+    read = _read_as(robot, package or [], xacro or [], srdf)
+    _make(read, file, arm, task, table_height, incomplete_shapes, preview, out)
+
+
+def _read_as(
+    model: str, packages: Sequence[str], xacro: Sequence[str], srdf: str | None
+) -> RobotConfig:
+    """A model with what it is to be read with.
+
+    Raises:
+        DrakeScrewError: an option is not of the form NAME=..., or there is no such folder or file.
+    """
+    from drake_screw.robot import RobotConfig
+
+    folders = {k: Path(v).absolute() for k, v in _named(packages, "--package", "my_arm=../my_arm")}
+    for name, folder in folders.items():
+        if not folder.is_dir():
+            raise DrakeScrewError(
+                f"--package: there is no folder '{folder}'",
+                remedy=f"Give the folder of package '{name}', in which its package.xml is.",
+            )
+    if srdf is not None and "://" not in srdf and not Path(srdf).is_file():
+        raise DrakeScrewError(
+            f"--srdf: there is no file '{srdf}'", remedy="Give the path of a robot's SRDF file."
+        )
+    arguments = dict(_named(xacro, "--xacro", "dof=7"))
+    return RobotConfig(model, (), "", (), packages=folders, xacro=arguments, srdf=srdf)
+
+
+def _named(texts: Sequence[str], option: str, example: str) -> Iterator[tuple[str, str]]:
+    """Names and values of NAME=VALUE; also of NAME:=VALUE, as ROS has it."""
+    for text in texts:
+        name, equals, value = text.partition("=")
+        name = name.removesuffix(":")
+        if not equals or not name:
+            raise DrakeScrewError(
+                f"{option}: '{text}' is not NAME=VALUE", remedy=f"Write {option} {example}, say."
+            )
+        yield name, value
 
 
 def _checked(file: Path) -> Path:
@@ -130,11 +196,12 @@ def _say_what_next(written: str, file: Path, out: Output) -> None:
 
 
 def _make(
-    robot: str,
+    read: RobotConfig,
     file: Path,
     arm: str | None,
     task: str,
     table_height: float | None,
+    incomplete_shapes: bool,
     preview: bool,
     out: Output,
 ) -> None:
@@ -142,11 +209,12 @@ def _make(
     from drake_screw.onboarding import assumptions, design, write_scenario
 
     found = design(
-        robot,
+        read,
         wanted_arm=arm,
         choose=_ask if sys.stdin.isatty() else None,
         task=task,
         table_height=table_height,
+        incomplete_shapes=incomplete_shapes,
         say=out.say,
     )
     picture = write_scenario(found, file, f"drake-screw {' '.join(sys.argv[1:])}")

@@ -75,6 +75,7 @@ class Design:
         start: configuration to start from.
         found: the work area.
         chain: the arm's kinematics.
+        unseen: what is said of collision shapes that cannot be had.
         remarks: what a user should know.
     """
 
@@ -94,26 +95,29 @@ class Design:
     start: Start
     found: Verified
     chain: ScrewChain
+    unseen: tuple[str, ...]
     remarks: tuple[str, ...]
 
 
 def design(
-    model: str,
+    model: str | RobotConfig,
     *,
     wanted_arm: str | None = None,
     choose: Callable[[Sequence[FoundArm]], str] | None = None,
     task: str = "pouring",
     table_height: float | None = None,
+    incomplete_shapes: bool = False,
     say: Say = lambda _: None,
 ) -> Design:
     """Find everything that a scenario needs for a robot.
 
     Args:
-        model: a shipped model's name, or the path of a model file.
+        model: a shipped model's name, or the path of a model file; or with what it is read.
         wanted_arm: its name, where there are several.
         choose: asks which of several arms to take; None where nobody can be asked.
         task: "pouring" or "scooping".
         table_height: m, of the table's top over the robot's base; found if None.
+        incomplete_shapes: go on where collision shapes cannot be had.
         say: told of each step.
 
     Raises:
@@ -127,12 +131,13 @@ def design(
     say(f"arm '{arm.name}': {len(arm.joints)} joints, end effector '{hand.frame}'")
     bare = _config(robot, arm, hand, rest)
     alone = build_workcell(bare)
-    if missing := missing_shapes(alone):
+    missing = missing_shapes(alone)
+    if missing and not incomplete_shapes:
         raise ModelError(
             "collision shapes of the robot cannot be had, so what touches there would not be seen:"
             + "".join(f"\n  {line}" for line in missing),
-            remedy="Mend what is missing, or write the scenario by hand with incomplete_shapes: "
-            "true in planner.",
+            remedy="Mend what is missing (--package says where a package is), or give "
+            "--incomplete-shapes: then nothing is seen to touch there.",
             file=robot.file,
         )
     chain = alone.arm.screw_chain()
@@ -166,7 +171,7 @@ def design(
     given = table_height is not None
     return Design(
         robot, arm, arms, why, hand, task, rest, touching, on_it, given, table, reach, planned,
-        start, found, chain, tuple(remarks),
+        start, found, chain, missing, tuple(remarks),
     )  # fmt: skip
 
 
@@ -186,13 +191,14 @@ def _choice(
 def _config(
     robot: Robot, arm: FoundArm, hand: FoundEndEffector, rest: dict[str, float]
 ) -> RobotConfig:
-    return RobotConfig(
-        robot.model if "://" in robot.model else str(robot.file),
-        arm.joints,
-        hand.frame,
-        (0.0,) * len(arm.joints),
-        arm.base,
-        rest,
+    return replace(
+        robot.given,
+        model=robot.given.model if "://" in robot.given.model else str(robot.file),
+        joints=arm.joints,
+        end_effector=hand.frame,
+        start=(0.0,) * len(arm.joints),
+        base=arm.base,
+        parked=rest,
         end_effector_rotation=hand.rotation,
     )
 

@@ -38,6 +38,7 @@ def scenario_text(design: Design, name: str, folder: Path, command: str) -> str:
         "",
         "robot:",
         f"  model: {_quoted(model_path(design, folder))}",
+        *_read_with(design, folder),
         *_arm_comment(design),
         *_wrapped(f"  joints: [{', '.join(map(_quoted, arm.joints))}]", 11),
         *_hand_comment(design),
@@ -99,6 +100,7 @@ def scenario_text(design: Design, name: str, folder: Path, command: str) -> str:
         "",
         "planner:",
         "  collision: true            # a plan fails along which the robot touches anything",
+        *_unseen(design),
         "",
         "seed: 0                      # the same seed gives the same run",
     ]
@@ -141,13 +143,43 @@ def scenario_name(robot: str) -> str:
 
 def model_path(design: Design, folder: Path) -> str:
     """How the scenario names its model: as it is shipped, or by a path from the folder."""
-    if "://" in design.robot.model:
-        return design.robot.model
-    if os.sep not in design.robot.model and not Path(design.robot.model).is_file():
-        return design.robot.model
-    relative = os.path.relpath(design.robot.file, folder.resolve())
+    if "://" in design.robot.given.model:
+        return design.robot.given.model
+    if os.sep not in design.robot.given.model and not Path(design.robot.given.model).is_file():
+        return design.robot.given.model
+    return _near(design.robot.file, folder)
+
+
+def _near(file: Path, folder: Path) -> str:
+    """A path from the folder, or in full where that is far."""
+    relative = os.path.relpath(file.resolve(), folder.resolve())
     far = relative.startswith(os.path.join("..", "..", ".."))
-    return str(design.robot.file) if far else relative
+    return str(file.resolve()) if far else relative
+
+
+def _read_with(design: Design, folder: Path) -> list[str]:
+    """Packages, arguments of xacro and SRDF, as far as they were given."""
+    given, lines = design.robot.given, []
+    if given.packages:
+        where = (f"{_quoted(k)}: {_quoted(_near(v, folder))}" for k, v in given.packages.items())
+        lines += _wrapped(f"  packages: {{{', '.join(where)}}}", 13)
+    if given.xacro:
+        values = (f"{_quoted(k)}: {json.dumps(v)}" for k, v in given.xacro.items())
+        lines += _wrapped(f"  xacro: {{{', '.join(values)}}}", 10)
+    if given.srdf is not None:
+        address = given.srdf if "://" in given.srdf else _near(Path(given.srdf), folder)
+        lines.append(f"  srdf: {_quoted(address)}")
+    return lines
+
+
+def _unseen(design: Design) -> list[str]:
+    if not design.unseen:
+        return []
+    return [
+        "  # Without this a run is refused: collision shapes cannot be had; it is not looked at",
+        f"  # what would touch them ({len(design.unseen)}; drake-screw check names them).",
+        "  incomplete_shapes: true",
+    ]
 
 
 def _arm_comment(design: Design) -> list[str]:
