@@ -4,9 +4,9 @@
 
 Models are those of the package example-robot-data (PyPI; it brings its files and is large), or of
 DIR, the folder that has `panda_description` and the like in it; there may be those of Fetch
-(fetch_ros) and Gen3 (ros2_kortex) beside them. What is not there is left out. Each robot's scenario is what
-`drake-screw init` makes of the model as it comes, without a question answered, with the simulated
-teacher; a plan in each region is executed. Prints a table in Markdown.
+(fetch_ros) and Gen3 (ros2_kortex) beside them. What is not there is left out. Each robot's
+scenario is what `drake-screw init` makes of the model as it comes, without a question answered,
+with the simulated teacher; a plan in each region is executed. Prints a table in Markdown.
 """
 
 from __future__ import annotations

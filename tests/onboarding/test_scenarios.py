@@ -12,6 +12,7 @@ from drake_screw import load_scenario, new_run
 from drake_screw.acquisition import Status
 from drake_screw.errors import DrakeScrewError
 from drake_screw.onboarding import Design, assumptions, design, scenario_text, write_scenario
+from drake_screw.robot import RobotConfig
 from drake_screw.runs.summary import summarize_run
 from tests.commands.conftest import Command, command
 from tests.onboarding.models import frame, links_and_joints, robot
@@ -73,6 +74,10 @@ def test_a_table_out_of_reach_is_refused(small: Design) -> None:
         (["iiwa14", "--arm", "left"], "no arm 'left'"),
         (["pouring", "--arm", "left"], "--arm is for a robot's model"),
         (["iiwa"], "iiwa14"),
+        (["iiwa14", "--xacro", "dof"], "--xacro: 'dof' is not NAME=VALUE"),
+        (["iiwa14", "--package", "my_arm=nowhere"], "--package: there is no folder"),
+        (["iiwa14", "--srdf", "nowhere.srdf"], "--srdf: there is no file 'nowhere.srdf'"),
+        (["pouring", "--incomplete-shapes"], "--incomplete-shapes is for a robot's model"),
     ],
 )
 def test_what_cannot_be_made_is_said(command: Command, args: list[str], expected: str) -> None:
@@ -80,6 +85,41 @@ def test_what_cannot_be_made_is_said(command: Command, args: list[str], expected
     assert code == 2
     assert expected in err
     assert list(Path().iterdir()) == []
+
+
+def test_what_a_model_is_read_with_is_written_too(tmp_path: Path) -> None:
+    pytest.importorskip("xacro")
+    package = tmp_path / "parts" / "my_arm"
+    package.mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>my_arm</name></package>")
+    lost = '<link name="cover"><collision><geometry><mesh filename="package://my_arm/lost.obj"/>'
+    lost += '</geometry></collision></link><joint name="on" type="fixed"><parent link="base"/>'
+    lost += '<child link="cover"/></joint>'
+    text = robot(links_and_joints("$(arg side)"), lost)
+    ns = '<robot xmlns:xacro="http://ros.org/wiki/xacro" '
+    file = tmp_path / "small.urdf.xacro"
+    file.write_text(
+        text.replace("<robot ", ns).replace("<link", '<xacro:arg name="side" default=""/><link', 1)
+    )
+    srdf = tmp_path / "small.srdf"
+    pair = '<disable_collisions link1="left_link_1" link2="left_link_3" reason="Never"/>'
+    srdf.write_text(f'<robot name="small">{pair}</robot>')
+    packages = {"my_arm": package}
+    given = RobotConfig(
+        str(file), (), "", (), packages=packages, xacro={"side": "left_"}, srdf=str(srdf)
+    )
+    with pytest.raises(DrakeScrewError, match="cover") as error:
+        design(given)
+    assert "--incomplete-shapes" in str(error.value)
+    made = tmp_path / "mine.yaml"
+    write_scenario(design(given, incomplete_shapes=True), made, "drake-screw init")
+    block = load_scenario(made).robot
+    assert block.joints[0] == "left_joint_1"
+    assert dict(block.xacro) == {"side": "left_"}
+    assert {name: Path(folder) for name, folder in block.packages.items()} == packages
+    assert Path(str(block.srdf)) == srdf
+    assert load_scenario(made).planner.incomplete_shapes
+    assert "my_arm: parts/my_arm" in made.read_text()
 
 
 @pytest.mark.slow
