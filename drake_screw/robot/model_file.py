@@ -13,6 +13,7 @@ from pathlib import Path
 
 from drake_screw.errors import ModelError
 from drake_screw.files import cache_folder, file_hash, write_text
+from drake_screw.robot.model_limits import check_joint_limits
 from drake_screw.robot.model_materials import mend_materials
 from drake_screw.robot.model_meshes import LeftOut, MeshesRead, make_absolute, read_meshes
 from drake_screw.robot.model_text import check_collision_shapes
@@ -92,6 +93,7 @@ def model_file(
             raise ModelError(f"expanded, it is not XML: {error}", file=file) from error
         return ModelFile(file, file, file_hash(file))
     check_collision_shapes(root, file)
+    check_joint_limits(root, file)
     if is_xacro and root.tag not in KINDS:
         raise ModelError(
             f"expanded, it is a '{root.tag}' and no robot",
@@ -115,8 +117,8 @@ def model_file(
     return ModelFile(file, _kept(model_xml(root), f"{_stem(file)}{suffix}"), hash, meshes.left_out)
 
 
-def check_shapes_of(file: Path) -> None:
-    """Refuse collision shapes of a model's file that directives add; see `check_collision_shapes`.
+def check_text_of(file: Path) -> None:
+    """Refuse shapes and limits of a model's file that directives add; see `check_collision_shapes`.
 
     A file that is neither URDF nor SDF, or that cannot be parsed, is left to Drake.
 
@@ -126,7 +128,9 @@ def check_shapes_of(file: Path) -> None:
     if file.suffix.lower() not in KINDS.values():
         return
     with suppress(ET.ParseError, OSError):
-        check_collision_shapes(parse_model(file.read_bytes()), file)
+        root = parse_model(file.read_bytes())
+        check_collision_shapes(root, file)
+        check_joint_limits(root, file)
 
 
 def _mend(root: ET.Element, place: ModelPlace, *, shapes: bool) -> bool:
