@@ -25,9 +25,11 @@ from drake_screw.demonstrations import (
     SegmentationConfig,
     look_at,
     read_library,
+    read_recording,
 )
 from drake_screw.demonstrations.demonstration import demonstration_of
-from drake_screw.demonstrations.library import JOINTS
+from drake_screw.demonstrations.hand_eye import check_object_poses
+from drake_screw.demonstrations.library import JOINTS, OBJECTS
 from drake_screw.demonstrations.shown import Shown, what_is_shown
 from drake_screw.errors import ModelError, RecordingError
 from drake_screw.planning import Planner
@@ -41,6 +43,11 @@ from drake_screw.typing import Array
 
 FOLDER = "folder"
 """The usual format of a recording."""
+
+LOOKED_AT = 300
+"""Samples of a recording that object poses are held against."""
+UNSTATED = 10.0
+"""rad/s or m/s, faster than which no joint moves, where its model does not say."""
 
 _T = TypeVar("_T")
 
@@ -69,6 +76,7 @@ class Recorder:
         area: where the objects may stand for it.
         robot: model of the robot that was led; None where `arm` is `own`.
         model: that was read of it; None likewise.
+        base: name of the frame that object poses are seen from.
     """
 
     arm: Arm
@@ -76,6 +84,7 @@ class Recorder:
     area: WorkArea
     robot: str | None = None
     model: ModelFile | None = None
+    base: str = "robot.base"
 
     @property
     def model_file(self) -> Path | None:
@@ -109,7 +118,7 @@ class Recorder:
             raise ModelError(
                 f"recorded_on: {error.message}", remedy=error.remedy, file=error.file
             ) from error
-        return cls(arm, own, area, str(block.model), added.model)
+        return cls(arm, own, area, str(block.model), added.model, str(block.base))
 
     def read(self, path: Path, format: str = FOLDER) -> Recording:
         """One recording, in a format that `plugins.find` knows.
@@ -118,8 +127,16 @@ class Recorder:
             RecordingError: with file and line, whatever is wrong.
             PluginError: no such format.
         """
-        reader = find("recording_formats", format)
-        return self._marked(self._try(lambda *arm: reader(path, *arm, objects=self._k)))
+        if format == FOLDER:
+            found = self._try(
+                lambda *arm: read_recording(
+                    path, *arm, objects=self._k, velocity_limits=self.velocity_limits
+                )
+            )
+        else:
+            reader = find("recording_formats", format)
+            found = self._try(lambda *arm: reader(path, *arm, objects=self._k))
+        return self._sane(found)
 
     def library(self, folder: Path, format: str = FOLDER) -> tuple[Recording, ...]:
         """All recordings in a folder, sorted by name.
@@ -132,8 +149,12 @@ class Recorder:
             PluginError: no such format.
         """
         if format == FOLDER:
-            found = self._try(lambda *arm: read_library(folder, *arm, objects=self._k))
-            return tuple(self._marked(recording) for recording in found)
+            found = self._try(
+                lambda *arm: read_library(
+                    folder, *arm, objects=self._k, velocity_limits=self.velocity_limits
+                )
+            )
+            return tuple(self._sane(recording) for recording in found)
         paths = sorted(p for p in folder.glob("*") if not p.name.startswith("."))
         if not paths:
             raise RecordingError(
@@ -194,8 +215,30 @@ class Recorder:
         X[2, 3] = self.area.z[0] - recording.X_WO[0, 2, 3]
         return X
 
-    def _marked(self, recording: Recording) -> Recording:
-        return replace(recording, robot=self.robot)
+    @property
+    def velocity_limits(self) -> Array:
+        """(n,) rad/s or m/s, of the arm that was led; wide where its model states none."""
+        assumed = np.isin(self.arm.joint_names, self.arm.assumed_velocities)
+        return np.where(assumed, UNSTATED, self.arm.velocity_limits)
+
+    def _sane(self, recording: Recording) -> Recording:
+        """The recording with the robot it is of, and with a note on doubtful object poses.
+
+        Raises:
+            RecordingError: an object cannot have stood where it says.
+        """
+        some = np.unique(np.linspace(0, len(recording.t) - 1, LOOKED_AT).astype(int))
+        file = recording.source
+        if file is not None and (file / OBJECTS).is_file():
+            file = file / OBJECTS
+        notes = check_object_poses(
+            self.arm.pose(recording.q[some]),
+            recording.X_WO,
+            [item.name for item in self.area.objects],
+            self.base,
+            file=file,
+        )
+        return replace(recording, robot=self.robot, notes=(*recording.notes, *notes))
 
     def _try(self, read: Callable[..., _T]) -> _T:
         """Read; where another arm's columns are found, say what the scenario should say."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.demonstrations.baxter_csv import csv_text, read_csv, read_rows
-from drake_screw.demonstrations.recording import Recording, checked
+from drake_screw.demonstrations.recording import Recording, checked, counted
 from drake_screw.errors import RecordingError
 from drake_screw.screws import normalized
 from drake_screw.typing import Array, PathLike
@@ -24,6 +24,7 @@ def read_recording(
     upper: Array,
     *,
     objects: int | None = None,
+    velocity_limits: Array | None = None,
 ) -> Recording:
     """Read and check one recording.
 
@@ -34,6 +35,7 @@ def read_recording(
         joint_names: the arm's n joints.
         lower, upper: (n,) limits, rad or m.
         objects: how many object poses there must be; any number if None.
+        velocity_limits: (n,) rad/s or m/s; how fast the arm moves is not looked at if None.
 
     Raises:
         RecordingError: with file and line, whatever is wrong.
@@ -47,7 +49,8 @@ def read_recording(
     X_WO = read_object_poses(folder / OBJECTS)
     if objects is not None and len(X_WO) != objects:
         raise RecordingError(
-            f"{len(X_WO)} object poses, where the scenario has {objects} objects",
+            f"{counted(len(X_WO), 'object pose')}, where the scenario has "
+            f"{counted(objects, 'object')}",
             remedy="Stack one 4x4 matrix for each object, in the scenario's order.",
             file=folder / OBJECTS,
         )
@@ -61,7 +64,14 @@ def read_recording(
         source=folder.resolve(),
         task_objects=_task_objects(folder / TASK),
     )
-    return checked(recording, lower, upper, file=folder / JOINTS, lines=lines)
+    return checked(
+        recording,
+        lower,
+        upper,
+        file=folder / JOINTS,
+        lines=lines,
+        velocity_limits=velocity_limits,
+    )
 
 
 def read_library(
@@ -71,6 +81,7 @@ def read_library(
     upper: Array,
     *,
     objects: int | None = None,
+    velocity_limits: Array | None = None,
 ) -> tuple[Recording, ...]:
     """All recordings in a folder, sorted by name.
 
@@ -79,6 +90,7 @@ def read_library(
         joint_names: the arm's n joints.
         lower, upper: (n,) limits, rad or m.
         objects: how many object poses each must have; any number if None.
+        velocity_limits: (n,) rad/s or m/s; how fast the arm moves is not looked at if None.
 
     Raises:
         RecordingError: there is no recording in it, or one of them cannot be used.
@@ -103,7 +115,12 @@ def read_library(
             file=folder,
             remedy="Each recording is a subfolder, such as demo_01.",
         )
-    return tuple(read_recording(f, joint_names, lower, upper, objects=objects) for f in found)
+    return tuple(
+        read_recording(
+            f, joint_names, lower, upper, objects=objects, velocity_limits=velocity_limits
+        )
+        for f in found
+    )
 
 
 def write_recording(
