@@ -135,12 +135,16 @@ def write_recording(
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / JOINTS).write_text(csv_text(recording.t, recording.q, recording.joint_names, held))
+    text = csv_text(recording.t, recording.q, recording.joint_names, held)
+    (folder / JOINTS).write_text(text, encoding="utf-8")
     np.savetxt(folder / OBJECTS, recording.X_WO.reshape(-1, 4), fmt="%.17g", delimiter=",")
     if recording.region_of_interest is not None:
         (folder / REGION).write_text(f"{recording.region_of_interest:g}\n")
     if recording.task_objects:
-        (folder / TASK).write_text("".join(f"{name}\n" for name in recording.task_objects))
+        (folder / TASK).write_text(
+            "".join(f"{name}\n" for name in recording.task_objects),
+            encoding="utf-8",
+        )
 
 
 def read_object_poses(file: PathLike) -> Array:

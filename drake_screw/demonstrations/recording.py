@@ -177,9 +177,7 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _seconds(
-    t: Array, notes: list[str], fail: Callable[[str, str], RecordingError]
-) -> Array:
+def _seconds(t: Array, notes: list[str], fail: Callable[[str, str], RecordingError]) -> Array:
     """Stamps that are meant to be seconds, in seconds if they can only be another unit."""
     moving = np.diff(t)[np.diff(t) > 0.0]
     if len(moving) < 3 or np.median(moving) <= GAP or (t[-1] - t[0]) / len(t) <= GAP:

@@ -63,9 +63,9 @@ def turns_in_words(turns: NDArray[np.int64], names: Sequence[str], first: Sequen
     for j in np.flatnonzero(turns.any(axis=0)).tolist():
         rows = np.flatnonzero(turns[:, j])
         where = "" if len(rows) == len(turns) else f" in {len(rows)} of {len(turns)} samples"
-        since = f", from line {first[int(rows[0])]} on" if where and rows[-1] + 1 == len(turns) else ""
-        count = int(np.abs(turns[:, j]).max())
-        said.append(
-            f"{names[j]} by {count} whole turn{'s' if count > 1 else ''}{where}{since}"
+        since = (
+            f", from line {first[int(rows[0])]} on" if where and rows[-1] + 1 == len(turns) else ""
         )
+        count = int(np.abs(turns[:, j]).max())
+        said.append(f"{names[j]} by {count} whole turn{'s' if count > 1 else ''}{where}{since}")
     return f"shifted {', '.join(said)}"

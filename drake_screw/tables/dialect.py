@@ -1,4 +1,4 @@
-"""How a text table is written: what separates cells, decimal commas, and whether there are names."""
+"""How a text table is written: what separates cells, decimal commas, and names or none."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
-
-from drake_screw.errors import RecordingError
 
 LOOKED_AT = 50
 """Lines from which a table's dialect is told."""
@@ -70,9 +68,6 @@ def dialect_of(
     Args:
         lines: from the file's beginning.
         separator, decimal: where they are known.
-
-    Raises:
-        RecordingError: quotation marks do not match.
     """
     comments = next((i for i, line in enumerate(lines) if not _is_comment(line)), len(lines))
     body = lines[comments : comments + LOOKED_AT]
@@ -153,6 +148,3 @@ def check_width(cells: Sequence[str], dialect: Dialect) -> tuple[str, str] | Non
             "Write the table with semicolons between the cells, or with decimal points.",
         )
     return said, "The row is cut off or has a stray comma; delete or repair it."
-
-
-__all__ = ["SPACE", "Dialect", "RecordingError", "cells_of", "check_width", "dialect_of"]

@@ -142,12 +142,14 @@ def _block(text: bytes, dialect: Dialect, spaces: bytes) -> Array | None:
         del marks
     if b'"' in text and text.count(b'"') % 2:
         return None
+    spaced = not single or b" " in text or b"\t" in text
     text = text.translate(spaces)
-    u = np.frombuffer(text, dtype=np.uint8)
-    blank = (u == 32) | (u == 10)
-    begins = np.flatnonzero(~blank & np.concatenate([[True], blank[:-1]]))
-    if (np.diff(np.searchsorted(begins, ends), prepend=0) != width).any():
-        return None
+    if spaced:
+        u = np.frombuffer(text, dtype=np.uint8)
+        blank = (u == 32) | (u == 10)
+        begins = np.flatnonzero(~blank & np.concatenate([[True], blank[:-1]]))
+        if (np.diff(np.searchsorted(begins, ends), prepend=0) != width).any():
+            return None
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:
@@ -234,6 +236,3 @@ def _joined(parts: list[NDArray[Any]]) -> NDArray[Any]:
     if all(part.dtype.kind == "f" for part in parts):
         return np.concatenate(parts)
     return np.concatenate([part.astype(str).astype(object) for part in parts])
-
-
-__all__ = ["SPACE", "Progress", "read_table"]
