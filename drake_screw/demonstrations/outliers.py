@@ -50,11 +50,11 @@ def plausible(
     usual = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
 
     def too_fast(a: int, b: int) -> bool:
-        allowed = FACTOR * velocity_limits * max(t[b] - t[a], usual) + NOISE
-        return bool((np.abs(q[b] - q[a]) > allowed).any())
+        reach = FACTOR * velocity_limits * max(t[b] - t[a], usual) + NOISE
+        return bool((np.abs(q[b] - q[a]) > reach).any())
 
     allowed = FACTOR * velocity_limits * np.maximum(np.diff(t), usual)[:, None] + NOISE
-    fast = (np.abs(np.diff(q, axis=0)) > allowed).any(axis=1)
+    fast = np.asarray(np.any(np.abs(np.diff(q, axis=0)) > allowed, axis=1))
     m, most = len(t), max(len(t) // SHARE, 1)
     for i in np.flatnonzero(fast).tolist():
         if not (keep[i] and keep[i + 1]):

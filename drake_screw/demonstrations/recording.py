@@ -19,6 +19,7 @@ CLAMPED_WITHIN = 1e-3  # rad; encoders read this far beyond a limit when the arm
 GAP = 0.5  # s
 JUMP = 0.05  # rad in one gap
 STILL = 2e-3  # rad
+MOST = 0.9  # of the samples within the limits; with fewer it is not single samples that are wrong
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,7 @@ def checked(
     notes.extend([note] if note else [])
     keep = np.append(True, np.diff(t) > 0.0)
     if not keep.all():
-        dropped = counted(np.count_nonzero(~keep), "sample")
+        dropped = counted(int(np.count_nonzero(~keep)), "sample")
         notes.append(f"dropped {dropped} with a repeated time stamp")
         t, q, where = t[keep], q[keep], where[keep]
     if len(t) < 2:
@@ -137,7 +138,8 @@ def checked(
     if turns.any():
         notes.append(turns_in_words(turns, recording.joint_names, where.tolist()))
         q = q - turns * TURN
-    if velocity_limits is not None:
+    inside = (q >= lower - CLAMPED_WITHIN) & (q <= upper + CLAMPED_WITHIN)
+    if velocity_limits is not None and inside.all(axis=1).mean() > MOST:
         keep, note = plausible(
             t, q, velocity_limits, recording.joint_names, of, fail, where.tolist()
         )

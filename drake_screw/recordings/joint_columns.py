@@ -99,7 +99,8 @@ def _around(names: Sequence[str], cores: Sequence[str]) -> list[Matched]:
     """Groups of columns that are the cores with one and the same text around each."""
     if len(cores) < 2 or not all(cores):
         return []
-    known, found = set(names), []
+    known = set(names)
+    found: list[Matched] = []
     for name in names:
         for place in re.finditer(re.escape(cores[0]), name):
             before, behind = name[: place.start()], name[place.end() :]

@@ -92,7 +92,7 @@ def read_mapping(file: Path) -> Mapping:
         name = str(keys[0]) if keys else ""
         if first["type"] == "extra_forbidden":
             message = f"{name}: unknown key"
-            remedy = suggestion(name, list(Mapping.model_fields), "Keys")
+            remedy: str | None = suggestion(name, list(Mapping.model_fields), "Keys")
         else:
             known = Mapping.model_fields.get(name)
             message = f"{name or 'the file'}: {first['msg'].lower()}"

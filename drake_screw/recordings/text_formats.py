@@ -57,7 +57,7 @@ def read_rostopic(
     kinds = Counter(words)
     usual, _ = kinds.most_common(1)[0]
     rows = np.array([row == usual for row in words])
-    notes = ()
+    notes: tuple[str, ...] = ()
     if len(kinds) > 1:
         notes = (f"left out {np.count_nonzero(~rows)} rows with the names of other joints",)
     kept = table.rows(rows)

@@ -180,7 +180,7 @@ def _angles(
         lengths = "m"
     raw[:, ~turns] *= LENGTHS[lengths or "m"]
     if mapping.angles is not None:
-        unit, why = mapping.angles, "as said"
+        unit, why = str(mapping.angles), "as said"
     else:
         unit, why = _told(raw, turns, [*matched.columns], arm)
     if unit == "deg":

@@ -71,7 +71,7 @@ def dialect_of(
     """
     comments = next((i for i, line in enumerate(lines) if not _is_comment(line)), len(lines))
     body = lines[comments : comments + LOOKED_AT]
-    found = []
+    found: list[tuple[float, int, str, list[tuple[int, list[str]]]]] = []
     for candidate in (separator,) if separator else _SEPARATORS:
         rows = _rows(body, candidate)
         if rows and (len(rows[0][1]) > 1 or separator):
@@ -109,7 +109,7 @@ def _is_comment(line: str) -> bool:
 
 def _rows(lines: Sequence[str], separator: str) -> list[tuple[int, list[str]]]:
     """Up to where quotation marks do not match; the reader says so."""
-    rows = []
+    rows: list[tuple[int, list[str]]] = []
     try:
         rows.extend(islice(cells_of(iter(lines), separator), LOOKED_AT))
     except csv.Error:
