@@ -232,7 +232,7 @@ class Recorder:
         if file is not None and (file / OBJECTS).is_file():
             file = file / OBJECTS
         notes = check_object_poses(
-            self.arm.pose(recording.q[some]),
+            (self.arm.pose(recording.q[some]) if recording.X_WE is None else recording.X_WE[some]),
             recording.X_WO,
             [item.name for item in self.area.objects],
             self.base,

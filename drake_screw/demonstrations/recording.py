@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from drake_screw.errors import RecordingError
 from drake_screw.screws.endless import TURN, is_endless, unwrapped
 from drake_screw.tables.clock import in_seconds, spread, unit_of
 from drake_screw.typing import Array, PathLike
+
+if TYPE_CHECKING:
+    from drake_screw.robot.arm import Arm
 
 CLAMPED_WITHIN = 1e-3  # rad; encoders read this far beyond a limit when the arm rests against it
 GAP = 0.5  # s
@@ -38,6 +42,8 @@ class Recording:
         source: folder it was read from.
         task_objects: names of the objects that the end effector works on, if the recording says so.
         robot: model of the robot it was made on; None for the arm that is planned for.
+        X_WE: (m, 4, 4) the end effector's path where that was recorded and joints were not; then
+            there are no joint names, and q is (m, 0).
     """
 
     name: str
@@ -50,6 +56,11 @@ class Recording:
     source: Path | None = None
     task_objects: tuple[str, ...] = ()
     robot: str | None = None
+    X_WE: Array | None = None
+
+    def path(self, arm: Arm) -> Array:
+        """X_WE (m, 4, 4), the end effector's path: as recorded, or by the joints."""
+        return arm.pose(self.q) if self.X_WE is None else self.X_WE
 
     @property
     def duration(self) -> float:
@@ -117,7 +128,7 @@ def checked(
             f"time runs backwards, from {t[row - 1]:.6f} s to {t[row]:.6f} s",
             "Sort the rows by time, or split a file into which two recordings were written.",
         )
-    t = _seconds(t, notes, lambda message, remedy: fail(0, message, remedy))
+    t = in_plain_seconds(t, notes, lambda message, remedy: fail(0, message, remedy))
     t, note = spread(t, np.append(True, (np.diff(q, axis=0) != 0.0).any(axis=1)))
     notes.extend([note] if note else [])
     keep = np.append(True, np.diff(t) > 0.0)
@@ -179,7 +190,9 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _seconds(t: Array, notes: list[str], fail: Callable[[str, str], RecordingError]) -> Array:
+def in_plain_seconds(
+    t: Array, notes: list[str], fail: Callable[[str, str], RecordingError]
+) -> Array:
     """Stamps that are meant to be seconds, in seconds if they can only be another unit."""
     moving = np.diff(t)[np.diff(t) > 0.0]
     if len(moving) < 3 or np.median(moving) <= GAP or (t[-1] - t[0]) / len(t) <= GAP:

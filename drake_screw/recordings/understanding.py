@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.hand_eye import check_object_poses
+from drake_screw.demonstrations.hand_poses import checked_hand
 from drake_screw.demonstrations.recording import CLAMPED_WITHIN, GAP, checked
 from drake_screw.demonstrations.turns import whole_turns
 from drake_screw.errors import RecordingError, suggestion
+from drake_screw.recordings.hand_columns import hand_columns, hand_path, reached
 from drake_screw.recordings.joint_columns import Matched, match_joints
 from drake_screw.recordings.mapping import FILE, Mapping
 from drake_screw.recordings.places import FORMS, Given
@@ -86,43 +89,37 @@ def understand(
         RecordingError: something cannot be told, or cannot be true.
     """
     mapping = mapping.with_told(dict(raw.told))
-    table, arm = raw.table, robot.arm
+    table = raw.table
     if not len(table):
         raise RecordingError("no rows", remedy="Record it again.", file=table.file)
     time = time_of(table, mapping)
-    matched = _joints(table, mapping, arm, time)
-    q, angles, slides, unit_said = _angles(table, matched, mapping, robot)
+    motion = _motion(table, mapping, robot, time)
     draft = Recording(
-        raw.name, arm.joint_names, time.t, q, np.tile(np.eye(4), (len(robot.names), 1, 1)),
+        raw.name, motion.joints, time.t, motion.q, np.tile(np.eye(4), (len(robot.names), 1, 1)),
         notes=raw.notes, source=None if table.file is None else table.file.resolve(),
+        X_WE=motion.X_WE,
     )  # fmt: skip
-    X_WO, places, missing = _objects(raw, mapping, robot, time.t, q)
+    X_WO, places, missing = _objects(raw, mapping, robot, draft)
     if missing and objects_needed:
         raise RecordingError(
             f"where was the {missing[0]}? The file does not say",
             remedy=f"Say it with --object {missing[0]}=x,y, or in {FILE} under objects. {FORMS}",
             file=table.file,
         )
-    found = checked(
-        draft, arm.lower, arm.upper, file=table.file, lines=table.lines, units=arm.units,
-        velocity_limits=robot.velocity_limits,
-    )  # fmt: skip
+    found = _checked(draft, table, robot)
     if not missing:
-        notes = _seen(found.q, X_WO, robot, table.file)
+        notes = _seen(found, X_WO, robot, table.file)
         found = replace(found, X_WO=X_WO, notes=(*found.notes, *notes))
     said = mapping.with_(
         format=format,
-        joints=matched.columns,
-        angles=angles,
-        lengths=slides,
+        **motion.keys,
         **{k: tuple(v) if isinstance(v, list) else v for k, v in time.keys.items()},
     )
     facts = (
         ("format", f"{format}, {table.about}" if table.about else format),
         ("rows", f"{len(table):,}, {found.duration:.2f} s of motion, {_rate(time.t)}"),
         ("time", time.said),
-        ("joints", f"{matched.how}: {', '.join(matched.columns)}"),
-        ("angles", unit_said),
+        *motion.facts,
         ("gaps", _gaps(time.t)),
         *(("object", line) for line in places),
         *(("note", note) for note in found.notes),
@@ -130,11 +127,69 @@ def understand(
     return Understood(None if missing else found, raw.name, facts, said)
 
 
-def _joints(table: Table, mapping: Mapping, arm: Arm, time: Time) -> Matched:
-    """The columns of the arm's joints.
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """Of joints q (m, n), or of the hand X_WE (m, 4, 4); how it was found, as keys and words."""
+
+    joints: tuple[str, ...]
+    q: Array
+    X_WE: Array | None
+    keys: dict[str, Any]
+    facts: tuple[tuple[str, str], ...]
+
+
+def _motion(table: Table, mapping: Mapping, robot: Robot, time: Time) -> _Motion:
+    """The joints' motion where there are joints, else the hand's.
 
     Raises:
-        RecordingError: there are none, or several.
+        RecordingError: there is neither.
+    """
+    arm = robot.arm
+    matched = None if mapping.hand else _joints(table, mapping, arm, time)
+    hand = hand_columns(table, mapping) if matched is None else None
+    if matched is None and hand is None:
+        raise RecordingError(
+            f"no columns of the arm's joints: {', '.join(arm.joint_names)}",
+            remedy=f"Say joints: [...], {arm.n} columns in this order, in {FILE}; or, of hand "
+            "poses, hand: [...]. If another robot made the recording, describe it in the "
+            f"scenario's block recorded_on. Columns found: {', '.join(table.names[:40])}",
+            file=table.file,
+            line=table.header,
+        )
+    if matched is None and hand is not None:
+        X_WE, unit = hand_path(table, hand, mapping), mapping.lengths or "m"
+        keys: dict[str, Any] = {"hand": hand.columns, "lengths": unit}
+        if hand.order != "matrix":
+            keys["quaternion"] = hand.order
+        facts = (("hand", hand.how), ("arm", reached(arm, X_WE, time.t)))
+        return _Motion((), np.zeros((len(table), 0)), X_WE, keys, facts)
+    assert matched is not None
+    q, angles, lengths, said = _angles(table, matched, mapping, robot)
+    listed = f"{matched.how}: {', '.join(matched.columns)}"
+    return _Motion(
+        arm.joint_names,
+        q,
+        None,
+        {"joints": matched.columns, "angles": angles, "lengths": lengths},
+        (("joints", listed), ("angles", said)),
+    )
+
+
+def _checked(draft: Recording, table: Table, robot: Robot) -> Recording:
+    if draft.X_WE is not None:
+        return checked_hand(draft, file=table.file, lines=table.lines)
+    arm = robot.arm
+    return checked(
+        draft, arm.lower, arm.upper, file=table.file, lines=table.lines, units=arm.units,
+        velocity_limits=robot.velocity_limits,
+    )  # fmt: skip
+
+
+def _joints(table: Table, mapping: Mapping, arm: Arm, time: Time) -> Matched | None:
+    """The columns of the arm's joints, if there are any.
+
+    Raises:
+        RecordingError: there are several, or those that are said are not there.
     """
     said = mapping.joints
     if isinstance(said, dict):
@@ -155,17 +210,8 @@ def _joints(table: Table, mapping: Mapping, arm: Arm, time: Time) -> Matched:
             )
         table.require(said)
         return Matched(tuple(said), "as said")
-    found = match_joints(table, arm.joint_names, time.columns)
-    if found is None:
-        raise RecordingError(
-            f"no columns of the arm's joints: {', '.join(arm.joint_names)}",
-            remedy=f"Say joints: [...], {arm.n} columns in this order, in {FILE}. If another robot "
-            "made the recording, describe it in the scenario's block recorded_on. Columns found: "
-            + ", ".join(table.names[:40]),
-            file=table.file,
-            line=table.header,
-        )
-    return found
+    any_order = hand_columns(table, mapping) is None
+    return match_joints(table, arm.joint_names, time.columns, any_order=any_order)
 
 
 def _angles(
@@ -209,7 +255,7 @@ def _told(raw: Array, turns: Array, columns: Sequence[str], arm: Arm) -> tuple[s
 
 
 def _objects(
-    raw: Raw, mapping: Mapping, robot: Robot, t: Array, q: Array
+    raw: Raw, mapping: Mapping, robot: Robot, draft: Recording
 ) -> tuple[Array, list[str], list[str]]:
     """X_WO (k, 4, 4), how each was found, and the names of those that were not."""
     for name in mapping.objects:
@@ -220,6 +266,8 @@ def _objects(
                 file=raw.table.file,
             )
 
+    t = draft.t
+
     def hand(time: float) -> Array:
         if not 0.0 <= time <= t[-1]:
             raise RecordingError(
@@ -227,7 +275,7 @@ def _objects(
                 remedy="Give a time in s since its first sample.",
                 file=raw.table.file,
             )
-        return robot.arm.pose(q[int(np.argmin(np.abs(t - time)))])
+        return _path(draft, robot, np.array([np.argmin(np.abs(t - time))]))[0]
 
     X_WO, said, missing = [], [], []
     for i, item in enumerate(robot.area.objects):
@@ -248,9 +296,15 @@ def _objects(
     return np.array(X_WO), said, missing
 
 
-def _seen(q: Array, X_WO: Array, robot: Robot, file: Path | None) -> tuple[str, ...]:
-    some = np.unique(np.linspace(0, len(q) - 1, LOOKED_AT).astype(int))
-    X_WE = robot.arm.pose(q[some])
+def _path(recording: Recording, robot: Robot, rows: Array) -> Array:
+    """X_WE of some samples."""
+    X_WE = recording.X_WE
+    return robot.arm.pose(recording.q[rows]) if X_WE is None else X_WE[rows]
+
+
+def _seen(found: Recording, X_WO: Array, robot: Robot, file: Path | None) -> tuple[str, ...]:
+    some = np.unique(np.linspace(0, len(found.t) - 1, LOOKED_AT).astype(int))
+    X_WE = _path(found, robot, some)
     return check_object_poses(X_WE, X_WO, robot.names, robot.base, file=file)
 
 

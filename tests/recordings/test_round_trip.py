@@ -10,10 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import Setup, load_scenario
-from drake_screw.assembly.importing import read_recordings
+from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw.assembly.importing import read_recordings, write_library
 from drake_screw.demonstrations import Recording
+from drake_screw.demonstrations.look_summary import summarized
 from drake_screw.recordings import Mapping
+from drake_screw.screws import quaternion_from_rotation
 
 LEFT = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
 PANDA = tuple(f"panda_joint{i}" for i in range(1, 8))
@@ -161,3 +163,41 @@ def test_half_the_rate_and_a_rate_without_time(
     want = setup.learn(Recording("half", LEFT, *half, demo.X_WO))
     np.testing.assert_allclose(setup.learn(a.recording).X_OE, want.X_OE, atol=1e-6)
     np.testing.assert_allclose(setup.learn(b.recording).X_OE, want.X_OE, atol=1e-6)
+
+
+HANDS = {
+    "xyzw": ["x", "y", "z", "qx", "qy", "qz", "qw"],
+    "ROS": [f"field.pose.position.{a}" for a in "xyz"]
+    + [f"field.pose.orientation.{a}" for a in "xyzw"],
+    "wxyz": ["a", "b", "c", "d", "e", "f", "g"],
+    "matrix": [f"O_T_EE_{i}" for i in range(16)],
+}
+
+
+@pytest.mark.parametrize("way", HANDS)
+def test_hand_poses_need_no_joints(way: str, setup: Setup, demo: Recording, tmp_path: Path) -> None:
+    X = setup.workcell.arm.pose(demo.q)
+    q = quaternion_from_rotation(X[:, :3, :3])
+    values = np.column_stack([X[:, :3, 3], q if way == "wxyz" else np.roll(q, -1, axis=1)])
+    if way == "matrix":
+        values = np.swapaxes(X, 1, 2).reshape(-1, 16)
+    names = ["time", *HANDS[way]]
+    text = table(names, [numbers(demo.t, "{:.6f}"), *(numbers(v) for v in values.T)])
+    (tmp_path / "demo_01.csv").write_text(text)
+    mapping = Mapping(objects={"bowl": tuple(demo.X_WO[0].ravel().tolist())})
+    if way == "wxyz":
+        mapping = mapping.with_(hand=tuple(HANDS[way]))
+        with pytest.raises(RecordingError, match="order of the quaternion's columns is not said"):
+            read_recordings(tmp_path, setup, mapping)
+        mapping = mapping.with_(quaternion="wxyz")
+    (found,) = read_recordings(tmp_path, setup, mapping)
+    assert found.recording is not None
+    assert ("arm", "the arm reaches all 12 of the hand poses looked at") in found.facts
+    (folder,) = write_library([found], tmp_path / "library")
+    back = setup.recorder.read(folder)
+    assert back.joint_names == ()
+    (kept,) = setup.look(back).demonstration.fidelity  # type: ignore[union-attr]
+    (want,) = setup.learn(demo).fidelity
+    assert kept.guiding_poses == want.guiding_poses
+    np.testing.assert_allclose(setup.learn(back).X_OE, setup.learn(found.recording).X_OE, atol=1e-6)
+    assert "not recorded; the hand was" in dict(summarized(setup.look(back)).facts())["joints"]
