@@ -13,6 +13,7 @@ from drake_screw.tables import read_table
 from drake_screw.typing import Array, PathLike
 
 TIME = "time"
+_ROWS = 10_000
 _ARM = ("s0", "s1", "e0", "e1", "w0", "w1", "w2", "gripper")
 COLUMNS = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in _ARM)
 
@@ -87,13 +88,15 @@ def csv_text(
     names = list(joint_names)
     columns = COLUMNS if set(names) <= set(COLUMNS) else tuple(names)
     held = held or {}
-    table = np.empty((len(t), len(columns)))
-    for i, name in enumerate(columns):
+    cells = ["%.6f"]
+    for name in columns:
         default = 100.0 if name.endswith("gripper") else 0.0
-        table[:, i] = q[:, names.index(name)] if name in names else held.get(name, default)
+        cells.append("%.12g" if name in names else f"{held.get(name, default):.12g}")
+    line = ",".join(cells) + "\n"
+    order = [names.index(name) for name in columns if name in names]
     text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *columns])
-    for time, row in zip(t, table.tolist(), strict=True):
-        writer.writerow([f"{time:.6f}", *(f"{value:.12g}" for value in row)])
+    csv.writer(text, lineterminator="\n").writerow([TIME, *columns])
+    for first in range(0, len(t), _ROWS):
+        rows = np.column_stack([t[first : first + _ROWS], q[first : first + _ROWS, order]])
+        text.writelines(line % tuple(row) for row in rows.tolist())
     return text.getvalue()

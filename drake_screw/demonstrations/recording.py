@@ -211,6 +211,8 @@ def in_plain_seconds(
 def _counted_on(
     recording: Recording, q: Array, lower: Array, upper: Array, notes: list[str]
 ) -> Array:
+    if not is_endless(lower, upper).any():
+        return q
     smooth = unwrapped(q, is_endless(lower, upper))
     changed = (np.abs(smooth - q) > np.pi).any(axis=0)
     if changed.any():

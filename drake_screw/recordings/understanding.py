@@ -242,7 +242,8 @@ def _told(raw: Array, turns: Array, columns: Sequence[str], arm: Arm) -> tuple[s
         inside = (q >= arm.lower - CLAMPED_WITHIN) & (q <= arm.upper + CLAMPED_WITHIN)
         return bool(inside.all(axis=1).mean() >= MOST)
 
-    finite = raw[np.isfinite(raw).all(axis=1)]
+    rows = np.isfinite(raw).all(axis=1)
+    finite = raw if rows.all() else raw[rows]
     if not len(finite) or within(finite):
         return "rad", "within the arm's limits"
     off = whole_turns(finite, arm.lower, arm.upper, arm.units, CLAMPED_WITHIN)

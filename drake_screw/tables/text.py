@@ -97,7 +97,7 @@ def _numbers(stream: BinaryIO, dialect: Dialect, size: int, say: Progress) -> Ar
     for _ in range(dialect.skip):
         stream.readline()
     spaces = _to_spaces(dialect)
-    blocks, rest = [], b""
+    found, count, rest = np.zeros((0, dialect.width)), 0, b""
     while True:
         read = stream.read(BLOCK)
         block = rest + read
@@ -112,12 +112,29 @@ def _numbers(stream: BinaryIO, dialect: Dialect, size: int, say: Progress) -> Ar
             values = _block(block, dialect, spaces)
             if values is None:
                 return None
-            blocks.append(values)
+            found = _with_room(found, count + len(values), stream.tell() / max(size, 1))
+            found[count : count + len(values)] = values
+            count += len(values)
         elif read:
             return None
         say(min(stream.tell() / max(size, 1), 1.0))
         if not read:
-            return np.concatenate(blocks) if blocks else np.zeros((0, dialect.width))
+            return found[:count]
+
+
+def _with_room(found: Array, rows: int, part: float) -> Array:
+    """The same array with room for so many rows, and for as many as the rest will have.
+
+    Args:
+        found: (m, c).
+        rows: that it has to hold.
+        part: of the file that they are.
+    """
+    if rows <= len(found):
+        return found
+    larger = np.empty((max(rows, int(1.02 * rows / max(part, 0.01))), found.shape[1]))
+    larger[: len(found)] = found
+    return larger
 
 
 def _to_spaces(dialect: Dialect) -> bytes:
