@@ -110,7 +110,8 @@ def _say(found: Understood, out: Output) -> None:
 def _progress(out: Output) -> Iterator[Callable[[Path], Callable[[float], None]]]:
     from rich.progress import Progress
 
-    with Progress(console=out.console, transient=True) as shown:
+    hidden = not out.console.is_terminal
+    with Progress(console=out.console, transient=True, disable=hidden) as shown:
 
         def of(file: Path) -> Callable[[float], None]:
             large = file.is_file() and file.stat().st_size > _LARGE
