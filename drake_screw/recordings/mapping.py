@@ -24,6 +24,8 @@ class Mapping(Block):
 
     format: str | None = None
     """of the file: table, rostopic or another that is plugged in"""
+    topic: str | None = None
+    """of a bag, with the joint states or the hand's poses"""
     separator: Annotated[str, Field(min_length=1, max_length=1)] | None = None
     """between cells"""
     decimal: Literal[".", ","] | None = None

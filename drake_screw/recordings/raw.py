@@ -24,6 +24,7 @@ class Raw:
         told: keys of a `Mapping` that the format itself states; the user's own go before them.
         X_WO: poses (4, 4) of objects that the format holds, by their names there.
         notes: what was left out, in words.
+        frames: that these poses are seen from, where the format says so.
     """
 
     name: str
@@ -31,3 +32,4 @@ class Raw:
     told: Dict[str, Any] = field(default_factory=dict)
     X_WO: Dict[str, Array] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    frames: Dict[str, str] = field(default_factory=dict)

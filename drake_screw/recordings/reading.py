@@ -19,6 +19,9 @@ SUFFIXES = {
     ".txt": "table",
     ".dat": "table",
     ".log": "table",
+    ".bag": "bag",
+    ".db3": "bag",
+    ".mcap": "bag",
     ".h5": "hdf5",
     ".hdf5": "hdf5",
 }
@@ -76,6 +79,8 @@ def _files(source: Path) -> list[Path]:
         raise RecordingError(
             "no such file or folder", remedy="Give a recording, or a folder of them.", file=source
         )
+    if (source / "metadata.yaml").is_file():  # a bag of ROS 2
+        return [source]
     files = sorted(
         item
         for item in source.iterdir()
@@ -104,7 +109,7 @@ def _beside(file: Path, mapping: Mapping) -> Mapping:
 
 
 def _format(file: Path) -> str:
-    format = SUFFIXES.get(file.suffix.lower())
+    format = "bag" if file.is_dir() else SUFFIXES.get(file.suffix.lower())
     if format is None:
         raise RecordingError(
             f"the format cannot be told by '{file.suffix}'",

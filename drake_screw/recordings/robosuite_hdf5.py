@@ -1,8 +1,8 @@
 """robosuite and robomimic HDF5: a group for each episode, with joints and object poses by name.
 
-``data/demo_0/obs/robot0_joint_pos`` is (m, n) rad, ``robot0_eef_pos`` and ``robot0_eef_quat`` (m, 3)
-m and (m, 4) with w last, and so are NAME_pos and NAME_quat of objects, all in the simulator's world.
-The rate is in the environment's arguments.
+``data/demo_0/obs/robot0_joint_pos`` is (m, n) rad, ``robot0_eef_pos`` and ``robot0_eef_quat`` are
+(m, 3) m and (m, 4) with w last, and so are NAME_pos and NAME_quat of objects, all in the
+simulator's world. The rate is in the environment's arguments.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -281,7 +282,12 @@ def _objects(
     X_WO, said, missing = [], [], []
     for i, item in enumerate(robot.area.objects):
         pose, how = np.eye(4), "not said yet"
-        if item.name in mapping.objects:
+        place = mapping.objects.get(item.name)
+        source = re.fullmatch(r"(topic|frame):(.+)", place) if isinstance(place, str) else None
+        if source:
+            pose, how = _of_bag(raw, source.group(2)), f"first pose of {place}"
+            how += f", seen from '{raw.frames.get(source.group(2), '')}'"
+        elif item.name in mapping.objects:
             given = Given(item.name, mapping.objects[item.name])
             pose, how = given.pose(float(robot.area.z[i]), hand)
         elif item.name in raw.X_WO:
@@ -291,10 +297,21 @@ def _objects(
         else:
             missing.append(item.name)
         x, y, z = pose[:3, 3]
-        place = f"({x:.3f}, {y:.3f}, {z:.3f}) m, " if item.name not in missing else ""
+        where = f"({x:.3f}, {y:.3f}, {z:.3f}) m, " if item.name not in missing else ""
         X_WO.append(pose)
-        said.append(f"{item.name} {place}{how}")
+        said.append(f"{item.name} {where}{how}")
     return np.array(X_WO), said, missing
+
+
+def _of_bag(raw: Raw, name: str) -> Array:
+    """The pose of a topic or frame."""
+    if name not in raw.X_WO:
+        raise RecordingError(
+            f"no topic or frame '{name}' with poses",
+            remedy=suggestion(name, raw.X_WO, "Topics and frames"),
+            file=raw.table.file,
+        )
+    return raw.X_WO[name]
 
 
 def _path(recording: Recording, robot: Robot, rows: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -101,7 +101,7 @@ class Table:
         return replace(self, columns=columns)
 
 
-def from_arrays(columns: Mapping[str, Sequence[Any]], file: Path, about: str = "") -> Table:
+def from_arrays(columns: Mapping[str, Any], file: Path, about: str = "") -> Table:
     """A table of columns that are arrays already, its rows counted from 1.
 
     Args:
