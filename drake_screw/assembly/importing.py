@@ -6,23 +6,17 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from drake_screw.assembly.recorder import Recorder
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Recording, write_recording
 from drake_screw.errors import RecordingError
 from drake_screw.files import WRITABLE_OUTPUT, write_folder, writing
-from drake_screw.recordings import Mapping, Robot, Understood
+from drake_screw.recordings import Mapping, Understood
 from drake_screw.recordings import read_recordings as read
 from drake_screw.tables.text import Progress
 from drake_screw.typing import PathLike
 
 IMPORTED = "imported.yaml"
 """In the folder of a recording: how the file that it comes from was read."""
-
-
-def robot_of(recorder: Recorder) -> Robot:
-    """What recordings of a recorder's arm are understood with."""
-    return Robot(recorder.arm, recorder.area, recorder.base, recorder.velocity_limits)
 
 
 def read_recordings(
@@ -36,7 +30,7 @@ def read_recordings(
     """Recordings of a source, as a scenario understands them; see `recordings.read_recordings`."""
     return read(
         source,
-        robot_of(setup.recorder),
+        setup.recorder.understood_with,
         mapping,
         objects_needed=objects_needed,
         progress=progress,

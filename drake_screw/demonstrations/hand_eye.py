@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from drake_screw.demonstrations.recording import Recording
 from drake_screw.errors import RecordingError
 from drake_screw.typing import Array
+
+if TYPE_CHECKING:
+    from drake_screw.robot.arm import Arm
 
 NEAR = 0.5
 """m. The end effector never is farther than this from an object that it works on."""
 FAR = 1.0
 """m. Where it comes no nearer to any object, the poses are wrong."""
+LOOKED_AT = 300
+"""Samples of a recording."""
 NOWHERE = 5.0
 """m from the end effector; no object of a table is there, whatever the others."""
 
@@ -59,6 +66,25 @@ def check_object_poses(
         f"the hand never comes within {NEAR:g} m of any object: {away[nearest]:.2f} m from the "
         f"{names[nearest]} at the nearest",
     )
+
+
+def check_objects(
+    recording: Recording, arm: Arm, names: Sequence[str], world: str, *, file: Path | None = None
+) -> tuple[str, ...]:
+    """`check_object_poses` of a recording, on some of its samples.
+
+    Args:
+        recording: with its objects.
+        arm: that was led.
+        names, world, file: see there.
+
+    Raises:
+        RecordingError: see there.
+    """
+    some = np.unique(np.linspace(0, len(recording.t) - 1, LOOKED_AT).astype(int))
+    X_WE = recording.X_WE
+    path = arm.pose(recording.q[some]) if X_WE is None else X_WE[some]
+    return check_object_poses(path, recording.X_WO, names, world, file=file)
 
 
 def _why(p_WO: Array, p_WE: Array, world: str) -> str:

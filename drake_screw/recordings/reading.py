@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from drake_screw.demonstrations.library import is_recording
 from drake_screw.errors import RecordingError
 from drake_screw.plugins import choices, find, is_known
 from drake_screw.recordings.mapping import FILE, Mapping, read_mapping
@@ -70,6 +71,18 @@ def read_recordings(
                 file=source,
             )
     return tuple(found)
+
+
+def holds_files(source: Path) -> bool:
+    """Whether a source is files from elsewhere, not a library: a file, or a folder of some."""
+    if source.is_file():
+        return True
+    if not source.is_dir() or is_recording(source):
+        return False
+    items = list(source.iterdir())
+    if any(item.is_dir() and is_recording(item) for item in items):
+        return False
+    return any(item.is_file() and item.suffix.lower() in SUFFIXES for item in items)
 
 
 def _files(source: Path) -> list[Path]:

@@ -120,7 +120,7 @@ def _parts(message: Any) -> tuple[Any, Any]:
 
 
 def _poses(message: Any, topic: str, kind: str) -> Iterable[tuple[str, str, Any]]:
-    """Names of topics and child frames, the frames that they are seen from, and X (4, 4) as the message has it."""
+    """Names of topics and child frames, what they are seen from, and X (4, 4)."""
     for part in message.transforms if kind == TREE else [message]:
         p, q = _parts(part)
         X = np.eye(4)

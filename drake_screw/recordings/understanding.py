@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from drake_screw.demonstrations import Recording
-from drake_screw.demonstrations.hand_eye import check_object_poses
+from drake_screw.demonstrations.hand_eye import check_objects
 from drake_screw.demonstrations.hand_poses import checked_hand
 from drake_screw.demonstrations.recording import CLAMPED_WITHIN, GAP, checked
 from drake_screw.demonstrations.turns import whole_turns
@@ -19,7 +17,8 @@ from drake_screw.errors import RecordingError, suggestion
 from drake_screw.recordings.hand_columns import hand_columns, hand_path, reached
 from drake_screw.recordings.joint_columns import Matched, match_joints
 from drake_screw.recordings.mapping import FILE, Mapping
-from drake_screw.recordings.places import FORMS, Given
+from drake_screw.recordings.object_places import objects_of
+from drake_screw.recordings.places import FORMS
 from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.time_column import Time, time_of
 from drake_screw.robot import Arm
@@ -31,8 +30,6 @@ from drake_screw.typing import Array
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 MOST = 0.99
 """Part of the samples that have to be within the limits for a unit to be that of the angles."""
-LOOKED_AT = 300
-"""Samples that object poses are held against."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +97,7 @@ def understand(
         notes=raw.notes, source=None if table.file is None else table.file.resolve(),
         X_WE=motion.X_WE,
     )  # fmt: skip
-    X_WO, places, missing = _objects(raw, mapping, robot, draft)
+    X_WO, places, missing = objects_of(raw, mapping, robot.arm, robot.area, draft)
     if missing and objects_needed:
         raise RecordingError(
             f"where was the {missing[0]}? The file does not say",
@@ -109,8 +106,9 @@ def understand(
         )
     found = _checked(draft, table, robot)
     if not missing:
-        notes = _seen(found, X_WO, robot, table.file)
-        found = replace(found, X_WO=X_WO, notes=(*found.notes, *notes))
+        found = replace(found, X_WO=X_WO)
+        notes = check_objects(found, robot.arm, robot.names, robot.base, file=table.file)
+        found = replace(found, notes=(*found.notes, *notes))
     said = mapping.with_(
         format=format,
         **motion.keys,
@@ -254,76 +252,6 @@ def _told(raw: Array, turns: Array, columns: Sequence[str], arm: Arm) -> tuple[s
     if np.abs(finite[:, turns]).max() > TURN and within(degrees):
         return "deg", "beyond a whole turn as radians, within the arm's limits as degrees"
     return "rad", "taken for granted"
-
-
-def _objects(
-    raw: Raw, mapping: Mapping, robot: Robot, draft: Recording
-) -> tuple[Array, list[str], list[str]]:
-    """X_WO (k, 4, 4), how each was found, and the names of those that were not."""
-    for name in mapping.objects:
-        if name not in robot.names:
-            raise RecordingError(
-                f"no object '{name}' in the scenario",
-                remedy=suggestion(name, robot.names, "Objects"),
-                file=raw.table.file,
-            )
-
-    t = draft.t
-
-    def hand(time: float) -> Array:
-        if not 0.0 <= time <= t[-1]:
-            raise RecordingError(
-                f"hand:{time:g}s: the recording lasts from 0 to {t[-1]:.2f} s",
-                remedy="Give a time in s since its first sample.",
-                file=raw.table.file,
-            )
-        return _path(draft, robot, np.array([np.argmin(np.abs(t - time))]))[0]
-
-    X_WO, said, missing = [], [], []
-    for i, item in enumerate(robot.area.objects):
-        pose, how = np.eye(4), "not said yet"
-        place = mapping.objects.get(item.name)
-        source = re.fullmatch(r"(topic|frame):(.+)", place) if isinstance(place, str) else None
-        if source:
-            pose, how = _of_bag(raw, source.group(2)), f"first pose of {place}"
-            how += f", seen from '{raw.frames.get(source.group(2), '')}'"
-        elif item.name in mapping.objects:
-            given = Given(item.name, mapping.objects[item.name])
-            pose, how = given.pose(float(robot.area.z[i]), hand)
-        elif item.name in raw.X_WO:
-            pose, how = raw.X_WO[item.name], "from the file"
-        elif item.lower == item.upper:
-            pose, how = robot.area.X_WO(robot.area.lower[None])[0, i], "fixed by the scenario"
-        else:
-            missing.append(item.name)
-        x, y, z = pose[:3, 3]
-        where = f"({x:.3f}, {y:.3f}, {z:.3f}) m, " if item.name not in missing else ""
-        X_WO.append(pose)
-        said.append(f"{item.name} {where}{how}")
-    return np.array(X_WO), said, missing
-
-
-def _of_bag(raw: Raw, name: str) -> Array:
-    """The pose of a topic or frame."""
-    if name not in raw.X_WO:
-        raise RecordingError(
-            f"no topic or frame '{name}' with poses",
-            remedy=suggestion(name, raw.X_WO, "Topics and frames"),
-            file=raw.table.file,
-        )
-    return raw.X_WO[name]
-
-
-def _path(recording: Recording, robot: Robot, rows: Array) -> Array:
-    """X_WE of some samples."""
-    X_WE = recording.X_WE
-    return robot.arm.pose(recording.q[rows]) if X_WE is None else X_WE[rows]
-
-
-def _seen(found: Recording, X_WO: Array, robot: Robot, file: Path | None) -> tuple[str, ...]:
-    some = np.unique(np.linspace(0, len(found.t) - 1, LOOKED_AT).astype(int))
-    X_WE = _path(found, robot, some)
-    return check_object_poses(X_WE, X_WO, robot.names, robot.base, file=file)
 
 
 def _rate(t: Array) -> str:

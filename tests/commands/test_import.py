@@ -100,3 +100,15 @@ def test_words_on_a_console_that_is_not_utf_8(encoding: str) -> None:
         check=True,
     )
     assert done.stdout == b"## <= pi ...\n"
+
+
+def test_other_verbs_take_files_to_which_nothing_has_to_be_added(
+    command: Command, log: Path
+) -> None:
+    folder = log.parent / "logs"
+    folder.mkdir()
+    log.rename(folder / "log.tsv")
+    (folder / "recording.yaml").write_text("objects: {bowl: [0.8, 0.1]}\n")
+    code, out, _ = command("look", folder)
+    assert code == 0
+    assert "of the bowl" in out
