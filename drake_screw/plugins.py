@@ -60,6 +60,7 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
         "table": "drake_screw.recordings.text_formats:read_text",
         "rostopic": "drake_screw.recordings.text_formats:read_rostopic",
         "bag": "drake_screw.recordings.ros_bags:read_bag",
+        "lerobot": "drake_screw.recordings.lerobot:read_lerobot",
         "hdf5": "drake_screw.recordings.robosuite_hdf5:read_hdf5",
     },
     "exporters": {

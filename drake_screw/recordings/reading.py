@@ -29,6 +29,10 @@ SUFFIXES = {
 """Formats by the suffixes of files."""
 
 
+FOLDERS = ("lerobot",)
+"""Formats of folders."""
+
+
 def read_recordings(
     source: PathLike,
     robot: Robot,
@@ -52,7 +56,7 @@ def read_recordings(
     """
     source, mapping = Path(source), mapping or Mapping()
     found: list[Understood] = []
-    for file in _files(source):
+    for file in _files(source, whole=mapping.format in FOLDERS):
         said = _beside(file, mapping)
         format = said.format or _format(file)
         if not is_known("sources", format):
@@ -85,14 +89,22 @@ def holds_files(source: Path) -> bool:
     return any(item.is_file() and item.suffix.lower() in SUFFIXES for item in items)
 
 
-def _files(source: Path) -> list[Path]:
+def _folder_format(source: Path) -> str | None:
+    """The format of a folder that is one source."""
+    if (source / "metadata.yaml").is_file():
+        return "bag"
+    return "lerobot" if (source / "meta" / "info.json").is_file() else None
+
+
+def _files(source: Path, *, whole: bool = False) -> list[Path]:
+    """Files of a source, or the folder itself if that is one source, or is to be taken `whole`."""
     if source.is_file():
         return [source]
     if not source.exists():
         raise RecordingError(
             "no such file or folder", remedy="Give a recording, or a folder of them.", file=source
         )
-    if (source / "metadata.yaml").is_file():  # a bag of ROS 2
+    if _folder_format(source) or whole:
         return [source]
     files = sorted(
         item
@@ -112,7 +124,7 @@ def _files(source: Path) -> list[Path]:
 
 def _beside(file: Path, mapping: Mapping) -> Mapping:
     """What is said, and what the file beside the data says where nothing is."""
-    beside = file.parent / FILE
+    beside = (file if file.is_dir() else file.parent) / FILE
     if not beside.is_file():
         return mapping
     other = read_mapping(beside)
@@ -122,7 +134,7 @@ def _beside(file: Path, mapping: Mapping) -> Mapping:
 
 
 def _format(file: Path) -> str:
-    format = "bag" if file.is_dir() else SUFFIXES.get(file.suffix.lower())
+    format = _folder_format(file) if file.is_dir() else SUFFIXES.get(file.suffix.lower())
     if format is None:
         raise RecordingError(
             f"the format cannot be told by '{file.suffix}'",
