@@ -56,9 +56,6 @@ def import_(
             metavar="NAME",
             help="Of the files: table, rostopic, bag, lerobot, hdf5. Default: told by them.",
         ),
-            metavar="NAME",
-            help="Of the files: table, rostopic, bag, lerobot, hdf5. Default: told by them.",
-        ),
     ] = None,
     rate: Annotated[
         float | None, typer.Option(metavar="HZ", help="Of samples without a time.", min=1e-9)

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from drake_screw.demonstrations.recording import GAP, Recording, counted, in_plain_seconds
-from drake_screw.errors import RecordingError
+from drake_screw.demonstrations.recording import GAP, Recording, in_plain_seconds
+from drake_screw.errors import RecordingError, counted
 from drake_screw.files import csv_text
 from drake_screw.screws import quaternion_from_rotation, rotation_angle
 from drake_screw.screws.rotations import rotation_from_quaternion

@@ -9,8 +9,8 @@ import numpy as np
 
 from drake_screw.demonstrations.baxter_csv import csv_text, read_csv, read_rows
 from drake_screw.demonstrations.hand_poses import checked_hand, hand_csv, read_hand_csv
-from drake_screw.demonstrations.recording import Recording, checked, counted
-from drake_screw.errors import RecordingError
+from drake_screw.demonstrations.recording import Recording, checked
+from drake_screw.errors import RecordingError, counted
 from drake_screw.screws import normalized
 from drake_screw.typing import Array, PathLike
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from drake_screw.demonstrations.outliers import plausible
 from drake_screw.demonstrations.turns import turns_in_words, whole_turns
-from drake_screw.errors import RecordingError
+from drake_screw.errors import RecordingError, counted
 from drake_screw.screws.endless import TURN, is_endless, unwrapped
 from drake_screw.tables.clock import in_seconds, spread, unit_of
 from drake_screw.typing import Array, PathLike
@@ -183,11 +183,6 @@ def checked(
     t, q = t[first : last + 1], q[first : last + 1].copy()
     q[0], q[-1] = ends
     return replace(recording, t=t - t[0], q=q, notes=tuple(notes))
-
-
-def counted(count: int, noun: str) -> str:
-    """A number of things: "1 sample", "2 samples"."""
-    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def in_plain_seconds(
