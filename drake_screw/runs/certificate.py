@@ -132,9 +132,9 @@ class Certificate:
             within = f"at least {' and '.join(kept)} within"
         return (
             f"This is of {self.regions} region{'' if self.regions == 1 else 's'}, with "
-            f"{self.demonstrations} demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn "
-            f"uniformly in each region. To succeed is to have a plan {within} the joint limits of the "
-            f"robot's model{collisions}.{self._unseen()}{self._way_there()}"
+            f"{self.demonstrations} demonstration{'' if self.demonstrations == 1 else 's'}, for "
+            f"places drawn uniformly in each region. To succeed is to have a plan {within} the "
+            f"joint limits of the robot's model{collisions}.{self._unseen()}{self._way_there()}"
         )
 
     def _unseen(self) -> str:
