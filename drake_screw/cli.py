@@ -16,6 +16,7 @@ from drake_screw.commands import (
     evaluate,
     execute,
     export,
+    import_,
     init,
     inspect,
     listing,
@@ -25,6 +26,7 @@ from drake_screw.commands import (
     select,
     study,
 )
+from drake_screw.commands.any_console import any_console
 from drake_screw.commands.instance_option import InstanceCommand
 from drake_screw.commands.log import set_up_logging
 from drake_screw.commands.options import VerboseOption
@@ -37,6 +39,7 @@ _VERBS: dict[str, tuple[Callable[..., None], str]] = {
     "init": (init.init, init.EXAMPLE),
     "list": (listing.list_shipped, listing.EXAMPLE),
     "check": (check.check, check.EXAMPLE),
+    "import": (import_.import_, import_.EXAMPLE),
     "look": (look.look, look.EXAMPLE),
     "run": (run.run, run.EXAMPLE),
     "report": (report.report, report.EXAMPLE),
@@ -92,6 +95,7 @@ def _versions(verbose: bool) -> list[str]:
 
 def main() -> None:
     """Run the command; bad input prints one message and ends with exit code 2."""
+    any_console()
     set_up_logging()
     began = time.perf_counter()
     try:

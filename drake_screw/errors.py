@@ -64,6 +64,15 @@ class PluginError(DrakeScrewError):
     """A strategy, motion, teacher or format that is named in text and cannot be found."""
 
 
+def counted(count: int, noun: str) -> str:
+    """A number of things in words.
+
+    >>> counted(1, "sample"), counted(2000, "sample")
+    ('1 sample', '2,000 samples')
+    """
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
 def nearest(name: str, valid: Iterable[str]) -> str | None:
     """The valid name most like `name`, or None where none is alike."""
     matches = difflib.get_close_matches(name, list(valid), n=1, cutoff=0.6)

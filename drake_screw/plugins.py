@@ -20,7 +20,13 @@ from typing import Any, Literal
 from drake_screw.errors import PluginError, nearest, suggestion
 
 Group = Literal[
-    "strategies", "asking_rules", "motions", "teachers", "recording_formats", "exporters"
+    "strategies",
+    "asking_rules",
+    "motions",
+    "teachers",
+    "recording_formats",
+    "sources",
+    "exporters",
 ]
 
 BUILT_IN: Mapping[Group, Mapping[str, str]] = {
@@ -50,6 +56,13 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
         "interactive": "drake_screw.assembly.teachers:interactive",
     },
     "recording_formats": {"folder": "drake_screw.demonstrations.library:read_recording"},
+    "sources": {
+        "table": "drake_screw.recordings.text_formats:read_text",
+        "rostopic": "drake_screw.recordings.text_formats:read_rostopic",
+        "bag": "drake_screw.recordings.ros_bags:read_bag",
+        "lerobot": "drake_screw.recordings.lerobot:read_lerobot",
+        "hdf5": "drake_screw.recordings.robosuite_hdf5:read_hdf5",
+    },
     "exporters": {
         "baxter-csv": "drake_screw.execution.trajectory_formats:baxter_csv",
         "ros-trajectory": "drake_screw.execution.trajectory_formats:ros_trajectory",
@@ -67,6 +80,7 @@ _SINGULAR: Mapping[Group, str] = {
     "motions": "motion",
     "teachers": "teacher",
     "recording_formats": "recording format",
+    "sources": "format of recordings to import",
     "exporters": "export format",
 }
 

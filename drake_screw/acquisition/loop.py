@@ -27,6 +27,7 @@ from drake_screw.acquisition.suggestion import initial_suggestions, suggest
 from drake_screw.acquisition.teacher import Teacher
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
+from drake_screw.errors import counted
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 
@@ -110,7 +111,7 @@ def acquire(
             yield Finished(Status.CERTIFIED, verdict.reason, verdict, acquired.demonstrations)
             return
         if len(acquired.demonstrations) >= budget:
-            reason = f"the budget of {budget} demonstrations is used up"
+            reason = f"the budget of {counted(budget, 'demonstration')} is used up"
             yield _finished(reason, verdict, acquired)
             return
         added, remark = yield from _ask(teacher, learn, acquired, round + 1, places, seed)

@@ -8,7 +8,7 @@ from pathlib import Path
 from drake_screw.assembly.recorder import FOLDER
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Look, Recording
-from drake_screw.demonstrations.library import JOINTS
+from drake_screw.demonstrations.library import is_recording
 from drake_screw.demonstrations.look_summary import LookSummary, summarized
 from drake_screw.errors import RecordingError
 from drake_screw.typing import PathLike
@@ -85,6 +85,6 @@ def _read(setup: Setup, path: Path) -> tuple[tuple[Recording, ...], bool]:
             remedy=f"Give the folder it stands in: {path.resolve().parent}",
             file=path,
         )
-    if path.is_file() or (path / JOINTS).is_file():
+    if path.is_file() or is_recording(path):
         return (setup.recorder.read(path, format),), False
     return setup.recordings(path), True

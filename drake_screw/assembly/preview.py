@@ -37,6 +37,7 @@ from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
 from drake_screw.bandits.eprocess import EProcess
 from drake_screw.bandits.naive_pac import NaivePac, sample_size
 from drake_screw.bandits.spending import attempt_delta
+from drake_screw.errors import counted
 from drake_screw.scenario.schema import Scenario
 
 PROBE = 2_000
@@ -154,7 +155,7 @@ class Preview:
             none = "none yet; recordings named in the scenario would be "
             yield "recorded", f"{'' if self.recordings_named else none}on {self.recorded_on}"
         yield "asks", self.ask + (f"; {ASKED_FIRST[self.first]} first" if self.first else "")
-        yield "budget", f"{self.budget} demonstrations"
+        yield "budget", counted(self.budget, "demonstration")
         yield from notes(self)
         rate = self.plans_per_second
         if rate is None:
@@ -170,7 +171,9 @@ class Preview:
     def _teacher(self) -> str:
         if self.teacher == "interactive":
             return "you, in the browser"
-        return str(self.motion) if self.recordings is None else f"{self.recordings} recordings"
+        return (
+            str(self.motion) if self.recordings is None else counted(self.recordings, "recording")
+        )
 
 
 def preview(scenario: Scenario) -> Preview:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
+from drake_screw.assembly.other_columns import with_hint
 from drake_screw.demonstrations import (
     Demonstration,
     FaithfulConfig,
@@ -25,13 +26,17 @@ from drake_screw.demonstrations import (
     SegmentationConfig,
     look_at,
     read_library,
+    read_recording,
 )
 from drake_screw.demonstrations.demonstration import demonstration_of
-from drake_screw.demonstrations.library import JOINTS
+from drake_screw.demonstrations.hand_eye import check_objects
+from drake_screw.demonstrations.library import OBJECTS
 from drake_screw.demonstrations.shown import Shown, what_is_shown
 from drake_screw.errors import ModelError, RecordingError
 from drake_screw.planning import Planner
 from drake_screw.plugins import find
+from drake_screw.recordings import Robot, read_recordings
+from drake_screw.recordings.reading import holds_files
 from drake_screw.robot import Arm, RobotConfig
 from drake_screw.robot.model_file import ModelFile
 from drake_screw.robot.parts import add_robot
@@ -41,6 +46,9 @@ from drake_screw.typing import Array
 
 FOLDER = "folder"
 """The usual format of a recording."""
+
+UNSTATED = 10.0
+"""rad/s or m/s, faster than which no joint moves, where its model does not say."""
 
 _T = TypeVar("_T")
 
@@ -69,6 +77,7 @@ class Recorder:
         area: where the objects may stand for it.
         robot: model of the robot that was led; None where `arm` is `own`.
         model: that was read of it; None likewise.
+        base: name of the frame that object poses are seen from.
     """
 
     arm: Arm
@@ -76,6 +85,7 @@ class Recorder:
     area: WorkArea
     robot: str | None = None
     model: ModelFile | None = None
+    base: str = "robot.base"
 
     @property
     def model_file(self) -> Path | None:
@@ -109,7 +119,7 @@ class Recorder:
             raise ModelError(
                 f"recorded_on: {error.message}", remedy=error.remedy, file=error.file
             ) from error
-        return cls(arm, own, area, str(block.model), added.model)
+        return cls(arm, own, area, str(block.model), added.model, str(block.base))
 
     def read(self, path: Path, format: str = FOLDER) -> Recording:
         """One recording, in a format that `plugins.find` knows.
@@ -118,22 +128,41 @@ class Recorder:
             RecordingError: with file and line, whatever is wrong.
             PluginError: no such format.
         """
-        reader = find("recording_formats", format)
-        return self._marked(self._try(lambda *arm: reader(path, *arm, objects=self._k)))
+        if format == FOLDER:
+            found = self._try(
+                lambda *arm: read_recording(
+                    path, *arm, objects=self._k, velocity_limits=self.velocity_limits
+                )
+            )
+        else:
+            reader = find("recording_formats", format)
+            found = self._try(lambda *arm: reader(path, *arm, objects=self._k))
+        return self._sane(found)
 
     def library(self, folder: Path, format: str = FOLDER) -> tuple[Recording, ...]:
         """All recordings in a folder, sorted by name.
 
-        Of a format other than the usual one every file and folder in it is a recording, except
-        those whose name begins with a dot.
+        Files from elsewhere are read as `drake-screw import` reads them, if recording.yaml beside
+        them says what they do not. Of a format other than the usual one every file and folder in it
+        is a recording, except those whose name begins with a dot.
 
         Raises:
             RecordingError: there is none in it, or one cannot be used.
             PluginError: no such format.
         """
+        if format == FOLDER and holds_files(folder):
+            return tuple(
+                replace(each.recording, robot=self.robot)
+                for each in read_recordings(folder, self.understood_with)
+                if each.recording is not None
+            )
         if format == FOLDER:
-            found = self._try(lambda *arm: read_library(folder, *arm, objects=self._k))
-            return tuple(self._marked(recording) for recording in found)
+            found = self._try(
+                lambda *arm: read_library(
+                    folder, *arm, objects=self._k, velocity_limits=self.velocity_limits
+                )
+            )
+            return tuple(self._sane(recording) for recording in found)
         paths = sorted(p for p in folder.glob("*") if not p.name.startswith("."))
         if not paths:
             raise RecordingError(
@@ -194,30 +223,40 @@ class Recorder:
         X[2, 3] = self.area.z[0] - recording.X_WO[0, 2, 3]
         return X
 
-    def _marked(self, recording: Recording) -> Recording:
-        return replace(recording, robot=self.robot)
+    @property
+    def understood_with(self) -> Robot:
+        """What recordings in files from elsewhere are understood with."""
+        return Robot(self.arm, self.area, self.base, self.velocity_limits)
+
+    @property
+    def velocity_limits(self) -> Array:
+        """(n,) rad/s or m/s, of the arm that was led; wide where its model states none."""
+        assumed = np.isin(self.arm.joint_names, self.arm.assumed_velocities)
+        return np.where(assumed, UNSTATED, self.arm.velocity_limits)
+
+    def _sane(self, recording: Recording) -> Recording:
+        """The recording with the robot it is of, and with a note on doubtful object poses.
+
+        Raises:
+            RecordingError: an object cannot have stood where it says.
+        """
+        file = recording.source
+        if file is not None and (file / OBJECTS).is_file():
+            file = file / OBJECTS
+        names = [item.name for item in self.area.objects]
+        notes = check_objects(recording, self.arm, names, self.base, file=file)
+        return replace(recording, robot=self.robot, notes=(*recording.notes, *notes))
 
     def _try(self, read: Callable[..., _T]) -> _T:
         """Read; where another arm's columns are found, say what the scenario should say."""
         try:
             return read(self.arm.joint_names, self.arm.lower, self.arm.upper)
         except RecordingError as error:
-            header = _header(error.file) if error.line == 1 else set()
-            if not header or set(self.arm.joint_names) <= header:
+            own, foreign = self.own.joint_names, self.robot is not None
+            better = with_hint(error, self.arm.joint_names, own, foreign=foreign)
+            if better is error:
                 raise
-            if set(self.own.joint_names) <= header:
-                hint = "It is of the scenario's own robot: remove the block recorded_on."
-            elif self.robot is not None or set(self.arm.joint_names) & header:
-                raise
-            else:
-                hint = (
-                    "If another robot made it, describe that one in a block recorded_on, as "
-                    "scenario pouring_iiwa does."
-                )
-            remedy = f"{error.remedy}. {hint}"
-            raise RecordingError(
-                error.message, remedy=remedy, file=error.file, line=error.line
-            ) from error
+            raise better from error
 
 
 @dataclass(frozen=True)
@@ -273,10 +312,3 @@ def _moved(learned: Demonstration, X: Array) -> Demonstration:
 
 def _key(recording: Recording) -> tuple[Path | None, str]:
     return recording.source, recording.name
-
-
-def _header(file: Path | None) -> set[str]:
-    if file is None or file.name != JOINTS or not file.is_file():
-        return set()
-    with file.open(encoding="utf-8-sig", errors="replace") as lines:
-        return {name.strip() for name in lines.readline().split(",")}

@@ -201,7 +201,8 @@ class Setup(PlanningSetup):
     @cached_property
     def own_recorder(self) -> Recorder:
         """Recordings of the arm that is planned for."""
-        return Recorder(self.workcell.arm, self.workcell.arm, self.area)
+        base = self.scenario.robot.base
+        return Recorder(self.workcell.arm, self.workcell.arm, self.area, base=base)
 
     @cached_property
     def recorder(self) -> Recorder:

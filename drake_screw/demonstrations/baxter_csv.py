@@ -8,9 +8,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from drake_screw.errors import RecordingError, suggestion
+from drake_screw.errors import RecordingError
+from drake_screw.tables import read_table
 from drake_screw.typing import Array, PathLike
 
+TIME = "time"
+_ROWS = 10_000
 _ARM = ("s0", "s1", "e0", "e1", "w0", "w1", "w2", "gripper")
 COLUMNS = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in _ARM)
 
@@ -19,7 +22,7 @@ def read_csv(file: PathLike, joint_names: Sequence[str]) -> tuple[Array, Array, 
     """Read the columns of some joints.
 
     Args:
-        file: CSV with a header; other columns are passed over.
+        file: a table with a header; other columns are passed over.
         joint_names: n of its columns.
 
     Returns:
@@ -29,36 +32,19 @@ def read_csv(file: PathLike, joint_names: Sequence[str]) -> tuple[Array, Array, 
         RecordingError: the file is missing or empty, lacks a column, or has a row that is not
             numbers.
     """
-    table = read_rows(file, "A recording is a folder with this file in it.")
-    header = [name.strip() for name in table[0][1]] if table else []
-    wanted = ["time", *joint_names]
-    for name in wanted:
-        if name not in header:
-            raise RecordingError(
-                f"no column '{name}'",
-                remedy=suggestion(name, header, "Columns found"),
-                file=file,
-                line=table[0][0] if table else 1,
-            )
-    columns = [header.index(name) for name in wanted]
-    rows, where = [], []
-    for number, cells in table[1:]:
-        if len(cells) != len(header):
-            raise RecordingError(
-                f"{len(cells)} cells where the header has {len(header)}",
-                remedy="The row was cut off or has a stray comma; delete or repair it.",
-                file=file,
-                line=number,
-            )
-        try:
-            rows.append([float(cells[i]) for i in columns])
-        except ValueError as error:
-            raise RecordingError(
-                f"not a number: {error.args[0].split(': ')[-1]}", file=file, line=number
-            ) from error
-        where.append(number)
-    values = np.array(rows, dtype=float).reshape(len(rows), len(wanted))
-    return values[:, 0], values[:, 1:], np.array(where, dtype=int)
+    table = read_table(file, remedy="A recording is a folder with this file in it.")
+    if TIME not in table.names:
+        known = set(joint_names) <= set(table.names)
+        table.require(
+            [TIME],
+            ". Time is in s; of samples at a fixed rate, or in another unit, bring the file in "
+            "with drake-screw import."
+            if known
+            else "",
+        )
+    table.require(joint_names)
+    columns = [table.numbers(name) for name in (TIME, *joint_names)]
+    return columns[0], np.stack(columns[1:], axis=1), table.lines
 
 
 def read_rows(file: PathLike, remedy: str) -> list[tuple[int, list[str]]]:
@@ -102,13 +88,15 @@ def csv_text(
     names = list(joint_names)
     columns = COLUMNS if set(names) <= set(COLUMNS) else tuple(names)
     held = held or {}
-    table = np.empty((len(t), len(columns)))
-    for i, name in enumerate(columns):
+    cells = ["%.6f"]
+    for name in columns:
         default = 100.0 if name.endswith("gripper") else 0.0
-        table[:, i] = q[:, names.index(name)] if name in names else held.get(name, default)
+        cells.append("%.12g" if name in names else f"{held.get(name, default):.12g}")
+    line = ",".join(cells) + "\n"
+    order = [names.index(name) for name in columns if name in names]
     text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *columns])
-    for time, row in zip(t, table.tolist(), strict=True):
-        writer.writerow([f"{time:.6f}", *(f"{value:.12g}" for value in row)])
+    csv.writer(text, lineterminator="\n").writerow([TIME, *columns])
+    for first in range(0, len(t), _ROWS):
+        rows = np.column_stack([t[first : first + _ROWS], q[first : first + _ROWS, order]])
+        text.writelines(line % tuple(row) for row in rows.tolist())
     return text.getvalue()

@@ -8,12 +8,15 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.demonstrations.baxter_csv import csv_text, read_csv, read_rows
+from drake_screw.demonstrations.hand_poses import checked_hand, hand_csv, read_hand_csv
 from drake_screw.demonstrations.recording import Recording, checked
-from drake_screw.errors import RecordingError
+from drake_screw.errors import RecordingError, counted
 from drake_screw.screws import normalized
 from drake_screw.typing import Array, PathLike
 
 JOINTS, OBJECTS, REGION = "joint_angles.csv", "object_poses.csv", "region_of_interest.txt"
+HAND = "hand_poses.csv"
+"""In the place of JOINTS, where the hand was recorded and the joints were not."""
 TASK = "task_objects.txt"
 
 
@@ -24,6 +27,7 @@ def read_recording(
     upper: Array,
     *,
     objects: int | None = None,
+    velocity_limits: Array | None = None,
 ) -> Recording:
     """Read and check one recording.
 
@@ -34,6 +38,7 @@ def read_recording(
         joint_names: the arm's n joints.
         lower, upper: (n,) limits, rad or m.
         objects: how many object poses there must be; any number if None.
+        velocity_limits: (n,) rad/s or m/s; how fast the arm moves is not looked at if None.
 
     Raises:
         RecordingError: with file and line, whatever is wrong.
@@ -43,14 +48,10 @@ def read_recording(
         raise RecordingError(
             "no such folder", file=folder, remedy=f"A recording is a folder with {JOINTS}."
         )
+    if (folder / HAND).is_file():
+        return _of_hand(folder, objects)
     t, q, lines = read_csv(folder / JOINTS, joint_names)
-    X_WO = read_object_poses(folder / OBJECTS)
-    if objects is not None and len(X_WO) != objects:
-        raise RecordingError(
-            f"{len(X_WO)} object poses, where the scenario has {objects} objects",
-            remedy="Stack one 4x4 matrix for each object, in the scenario's order.",
-            file=folder / OBJECTS,
-        )
+    X_WO = _poses_of(folder, objects)
     recording = Recording(
         folder.name,
         tuple(joint_names),
@@ -61,7 +62,14 @@ def read_recording(
         source=folder.resolve(),
         task_objects=_task_objects(folder / TASK),
     )
-    return checked(recording, lower, upper, file=folder / JOINTS, lines=lines)
+    return checked(
+        recording,
+        lower,
+        upper,
+        file=folder / JOINTS,
+        lines=lines,
+        velocity_limits=velocity_limits,
+    )
 
 
 def read_library(
@@ -71,6 +79,7 @@ def read_library(
     upper: Array,
     *,
     objects: int | None = None,
+    velocity_limits: Array | None = None,
 ) -> tuple[Recording, ...]:
     """All recordings in a folder, sorted by name.
 
@@ -79,6 +88,7 @@ def read_library(
         joint_names: the arm's n joints.
         lower, upper: (n,) limits, rad or m.
         objects: how many object poses each must have; any number if None.
+        velocity_limits: (n,) rad/s or m/s; how fast the arm moves is not looked at if None.
 
     Raises:
         RecordingError: there is no recording in it, or one of them cannot be used.
@@ -90,20 +100,25 @@ def read_library(
             file=folder,
             remedy="Give a folder of recordings.",
         )
-    if (folder / JOINTS).is_file():
+    if is_recording(folder):
         raise RecordingError(
             "this is one recording, not a folder of recordings",
             file=folder,
             remedy=f"Give the folder it stands in: {folder.resolve().parent}",
         )
-    found = sorted(item for item in folder.iterdir() if (item / JOINTS).is_file())
+    found = sorted(item for item in folder.iterdir() if is_recording(item))
     if not found:
         raise RecordingError(
             f"no recordings here: no subfolder has a {JOINTS}",
             file=folder,
             remedy="Each recording is a subfolder, such as demo_01.",
         )
-    return tuple(read_recording(f, joint_names, lower, upper, objects=objects) for f in found)
+    return tuple(
+        read_recording(
+            f, joint_names, lower, upper, objects=objects, velocity_limits=velocity_limits
+        )
+        for f in found
+    )
 
 
 def write_recording(
@@ -118,12 +133,19 @@ def write_recording(
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / JOINTS).write_text(csv_text(recording.t, recording.q, recording.joint_names, held))
+    if recording.X_WE is None:
+        text = csv_text(recording.t, recording.q, recording.joint_names, held)
+        (folder / JOINTS).write_text(text, encoding="utf-8")
+    else:
+        (folder / HAND).write_text(hand_csv(recording.t, recording.X_WE), encoding="utf-8")
     np.savetxt(folder / OBJECTS, recording.X_WO.reshape(-1, 4), fmt="%.17g", delimiter=",")
     if recording.region_of_interest is not None:
         (folder / REGION).write_text(f"{recording.region_of_interest:g}\n")
     if recording.task_objects:
-        (folder / TASK).write_text("".join(f"{name}\n" for name in recording.task_objects))
+        (folder / TASK).write_text(
+            "".join(f"{name}\n" for name in recording.task_objects),
+            encoding="utf-8",
+        )
 
 
 def read_object_poses(file: PathLike) -> Array:
@@ -163,6 +185,46 @@ def read_object_poses(file: PathLike) -> Array:
             file=file,
         )
     return normalized(X_WO)
+
+
+def is_recording(folder: Path) -> bool:
+    """Whether a folder is one: it has joint angles, or hand poses."""
+    return (folder / JOINTS).is_file() or (folder / HAND).is_file()
+
+
+def _of_hand(folder: Path, objects: int | None) -> Recording:
+    """A recording of hand poses.
+
+    Raises:
+        RecordingError: with file and line, whatever is wrong.
+    """
+    file = folder / HAND
+    t, X_WE, lines = read_hand_csv(file)
+    X_WO = _poses_of(folder, objects)
+    recording = Recording(
+        folder.name,
+        (),
+        t,
+        np.zeros((len(t), 0)),
+        X_WO,
+        _factor(folder / REGION),
+        source=folder.resolve(),
+        task_objects=_task_objects(folder / TASK),
+        X_WE=X_WE,
+    )
+    return checked_hand(recording, file=file, lines=lines)
+
+
+def _poses_of(folder: Path, objects: int | None) -> Array:
+    X_WO = read_object_poses(folder / OBJECTS)
+    if objects is not None and len(X_WO) != objects:
+        raise RecordingError(
+            f"{counted(len(X_WO), 'object pose')}, where the scenario has "
+            f"{counted(objects, 'object')}",
+            remedy="Stack one 4x4 matrix for each object, in the scenario's order.",
+            file=folder / OBJECTS,
+        )
+    return X_WO
 
 
 def _factor(file: Path) -> float | None:

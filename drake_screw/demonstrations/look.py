@@ -62,7 +62,7 @@ class Look:
         X_WE: (m, 4, 4) the end effector's path, and
         X_WO: (k, 4, 4) the objects, for the arm that is planned for.
         lower, upper: (n,) rad or m, joint limits of the arm that was led.
-        units: n units of its joints, "rad" or "m".
+        units: n units of its joints, "rad" or "m"; none where the hand alone was recorded.
         demonstration: what is learned from it; None if it is refused.
         refused: why it is; None if it is not.
     """
@@ -198,6 +198,7 @@ def look_at(shown: Shown, arm: Arm) -> Look:
     """What a recording of an arm holds, and what becomes of it; see `shown.what_is_shown`."""
     found: Demonstration | None = None
     refused: NoMotionKept | None = None
+    joints = shown.recording.X_WE is None
     try:
         found = demonstration_of(shown)
     except NoMotionKept as error:
@@ -206,9 +207,9 @@ def look_at(shown: Shown, arm: Arm) -> Look:
         shown,
         shown.X_WE,
         shown.recording.X_WO,
-        arm.lower,
-        arm.upper,
-        arm.units,
+        arm.lower if joints else arm.lower[:0],
+        arm.upper if joints else arm.upper[:0],
+        arm.units if joints else (),
         found,
         refused,
     )

@@ -199,7 +199,7 @@ class LookSummary:
         if self.robot is not None:
             yield "recorded on", self.robot
         yield from (("importer", note) for note in self.notes)
-        yield "joints", str(self.tightest)
+        yield "joints", str(self.tightest) if self.joints else "not recorded; the hand was"
         yield from ((item.name, str(item)) for item in self.objects)
         position, rotation = self.position_tolerance * 1e3, self.rotation_tolerance
         yield "tolerances", f"{position:g} mm and {rotation:.2g} rad from the screws"

@@ -5,17 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drake_screw.errors import RecordingError
-from drake_screw.screws.endless import is_endless, unwrapped
+from drake_screw.demonstrations.outliers import plausible
+from drake_screw.demonstrations.turns import turns_in_words, whole_turns
+from drake_screw.errors import RecordingError, counted
+from drake_screw.screws.endless import TURN, is_endless, unwrapped
+from drake_screw.tables.clock import in_seconds, spread, unit_of
 from drake_screw.typing import Array, PathLike
+
+if TYPE_CHECKING:
+    from drake_screw.robot.arm import Arm
 
 CLAMPED_WITHIN = 1e-3  # rad; encoders read this far beyond a limit when the arm rests against it
 GAP = 0.5  # s
 JUMP = 0.05  # rad in one gap
 STILL = 2e-3  # rad
+MOST = 0.9  # of the samples within the limits; with fewer it is not single samples that are wrong
 
 
 @dataclass(frozen=True)
@@ -34,6 +42,8 @@ class Recording:
         source: folder it was read from.
         task_objects: names of the objects that the end effector works on, if the recording says so.
         robot: model of the robot it was made on; None for the arm that is planned for.
+        X_WE: (m, 4, 4) the end effector's path where that was recorded and joints were not; then
+            there are no joint names, and q is (m, 0).
     """
 
     name: str
@@ -46,6 +56,11 @@ class Recording:
     source: Path | None = None
     task_objects: tuple[str, ...] = ()
     robot: str | None = None
+    X_WE: Array | None = None
+
+    def path(self, arm: Arm) -> Array:
+        """X_WE (m, 4, 4), the end effector's path: as recorded, or by the joints."""
+        return arm.pose(self.q) if self.X_WE is None else self.X_WE
 
     @property
     def duration(self) -> float:
@@ -61,12 +76,15 @@ def checked(
     file: PathLike | None = None,
     lines: Array | None = None,
     units: Sequence[str] | None = None,
+    velocity_limits: Array | None = None,
 ) -> Recording:
     """The recording made fit for use, or an error that says where it is not.
 
-    Time is rebased to 0, samples with the stamp of the one before are dropped, joints within 1 mrad
-    (1 mm) beyond a limit are clamped, angles of joints without limits are counted on where they
-    jump by full turns, and of a still head and tail one sample is kept; `notes` says what was done.
+    Time is rebased to 0, and made seconds where it can only be another unit. Samples with the stamp
+    of the one before are dropped or, where the stamps are coarse, spread. Angles a whole turn off
+    are shifted, those of joints without limits counted on where they jump by full turns; single
+    samples that cannot be true are dropped. Joints within 1 mrad (1 mm) beyond a limit are clamped,
+    and of a still head and tail one sample is kept; `notes` says what was done.
 
     Args:
         recording: as read.
@@ -74,10 +92,12 @@ def checked(
         file: named in errors.
         lines: (m,) the line of each sample in `file`.
         units: "rad" or "m" of each joint; "rad" if None.
+        velocity_limits: (n,) rad/s or m/s; how fast the arm moves is not looked at if None.
 
     Raises:
         RecordingError: fewer than two samples, a number that is not finite, time that runs
-            backwards, angles in degrees or beyond the limits, a gap in which the arm moved.
+            backwards or is in no unit, angles in degrees or beyond the limits, a joint that moves
+            faster than it can, a gap in which the arm moved.
     """
     t, q, notes = recording.t, recording.q, list(recording.notes)
     where = np.arange(len(t)) if lines is None else np.asarray(lines)
@@ -87,7 +107,9 @@ def checked(
 
     if len(t) < 2:
         raise RecordingError(
-            f"{len(t)} samples; a recording needs at least 2", file=file, remedy="Record it again."
+            f"{counted(len(t), 'sample')}; a recording needs at least 2",
+            file=file,
+            remedy="Record it again.",
         )
     bad = ~(np.isfinite(t) & np.isfinite(q).all(axis=1))
     if bad.any():
@@ -106,12 +128,34 @@ def checked(
             f"time runs backwards, from {t[row - 1]:.6f} s to {t[row]:.6f} s",
             "Sort the rows by time, or split a file into which two recordings were written.",
         )
+    t = in_plain_seconds(t, notes, lambda message, remedy: fail(0, message, remedy))
+    t, note = spread(t, np.append(True, (np.diff(q, axis=0) != 0.0).any(axis=1)))
+    notes.extend([note] if note else [])
     keep = np.append(True, np.diff(t) > 0.0)
     if not keep.all():
-        notes.append(f"dropped {np.count_nonzero(~keep)} samples with a repeated time stamp")
+        dropped = counted(int(np.count_nonzero(~keep)), "sample")
+        notes.append(f"dropped {dropped} with a repeated time stamp")
         t, q, where = t[keep], q[keep], where[keep]
+    if len(t) < 2:
+        raise fail(
+            0,
+            f"all {len(keep)} samples have one time stamp",
+            "Stamps so coarse say nothing of the rate: bring the recording in with drake-screw "
+            "import, and rate: 100 (Hz) in recording.yaml.",
+        )
     of = ["rad"] * q.shape[1] if units is None else list(units)
     q = _counted_on(recording, q, lower, upper, notes)
+    turns = whole_turns(q, lower, upper, of, CLAMPED_WITHIN)
+    if turns.any():
+        notes.append(turns_in_words(turns, recording.joint_names, where.tolist()))
+        q = q - turns * TURN
+    inside = (q >= lower - CLAMPED_WITHIN) & (q <= upper + CLAMPED_WITHIN)
+    if velocity_limits is not None and inside.all(axis=1).mean() > MOST:
+        keep, note = plausible(
+            t, q, velocity_limits, recording.joint_names, of, fail, where.tolist()
+        )
+        notes.extend([note] if note else [])
+        t, q, where = t[keep], q[keep], where[keep]
     q = _within_limits(recording, q, lower, upper, of, notes, fail)
     gaps = np.flatnonzero((np.diff(t) > GAP) & (np.abs(np.diff(q, axis=0)).max(axis=1) > JUMP))
     if gaps.size:
@@ -141,9 +185,29 @@ def checked(
     return replace(recording, t=t - t[0], q=q, notes=tuple(notes))
 
 
+def in_plain_seconds(
+    t: Array, notes: list[str], fail: Callable[[str, str], RecordingError]
+) -> Array:
+    """Stamps that are meant to be seconds, in seconds if they can only be another unit."""
+    moving = np.diff(t)[np.diff(t) > 0.0]
+    if len(moving) < 3 or np.median(moving) <= GAP or (t[-1] - t[0]) / len(t) <= GAP:
+        return t
+    unit = unit_of(t - t[0])
+    if unit is None or unit in ("s", "iso", "frames"):
+        raise fail(
+            f"the samples are {np.median(moving):g} s apart, if time is in seconds",
+            "Frame numbers, or another unit? Write time in s; or bring the file in with "
+            "drake-screw import, and time_unit: ms (say) or rate: 100 (Hz) in recording.yaml.",
+        )
+    notes.append(f"time is in {unit}, not in s: taken as that, {in_seconds(t, unit)[-1]:.2f} s")
+    return in_seconds(t, unit)
+
+
 def _counted_on(
     recording: Recording, q: Array, lower: Array, upper: Array, notes: list[str]
 ) -> Array:
+    if not is_endless(lower, upper).any():
+        return q
     smooth = unwrapped(q, is_endless(lower, upper))
     changed = (np.abs(smooth - q) > np.pi).any(axis=0)
     if changed.any():

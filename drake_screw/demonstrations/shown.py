@@ -70,7 +70,7 @@ def what_is_shown(
         measure = config
     else:
         measure = FaithfulConfig(region_of_interest=max(config.region_of_interest, 1.0))
-    X_WE = arm.pose(recording.q)
+    X_WE = recording.path(arm)
     regions = measure.regions(X_WE, recording.X_WO, named)
     return Shown(recording, known, X_WE, config, measure, regions)
 

@@ -131,10 +131,10 @@ class Certificate:
             kept += [f"{self.slide_margin:g} m, where joints slide,"] * (self.slide_margin > 0.0)
             within = f"at least {' and '.join(kept)} within"
         return (
-            f"This is of {self.regions} regions, with {self.demonstrations} "
-            f"demonstration{'' if self.demonstrations == 1 else 's'}, for places drawn uniformly "
-            f"in each region. To succeed is to have a plan {within} the joint limits of the "
-            f"robot's model{collisions}.{self._unseen()}{self._way_there()}"
+            f"This is of {self.regions} region{'' if self.regions == 1 else 's'}, with "
+            f"{self.demonstrations} demonstration{'' if self.demonstrations == 1 else 's'}, for "
+            f"places drawn uniformly in each region. To succeed is to have a plan {within} the "
+            f"joint limits of the robot's model{collisions}.{self._unseen()}{self._way_there()}"
         )
 
     def _unseen(self) -> str:

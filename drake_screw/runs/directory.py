@@ -13,7 +13,7 @@ from typing import Any, Self
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.demonstrations import Fidelity, Recording, write_recording
-from drake_screw.demonstrations.library import JOINTS
+from drake_screw.demonstrations.library import is_recording
 from drake_screw.errors import RunDirectoryError
 from drake_screw.files import fresh_folder, make_folder, write_folder, write_text, writing
 from drake_screw.runs.codec import json_text, read_run_record, save_evaluation
@@ -112,7 +112,7 @@ class RunDirectory:
         folder = self.path / DEMONSTRATIONS / f"{number + 1:02d}_{recording.name}"
 
         def fill(temporary: Path) -> None:
-            if recording.source is not None and (recording.source / JOINTS).is_file():
+            if recording.source is not None and is_recording(recording.source):
                 shutil.copytree(recording.source, temporary, dirs_exist_ok=True)
             else:
                 write_recording(recording, temporary, held)

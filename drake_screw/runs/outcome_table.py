@@ -11,6 +11,7 @@ import numpy as np
 
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import counted
 from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.planning.symmetry import TOOL
@@ -54,7 +55,10 @@ class OutcomeTable:
     seconds: float
 
     def __str__(self) -> str:
-        count = f"{self.instances:,} instances x {len(self.success_rates)} demonstrations"
+        count = (
+            f"{counted(self.instances, 'instance')} x "
+            f"{counted(len(self.success_rates), 'demonstration')}"
+        )
         lines = [f"{count} in {self.seconds:.1f} s"]
         if self.outside:
             lines.append(f"note: {self.outside:,} instances lie outside the work area")

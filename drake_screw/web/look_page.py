@@ -74,7 +74,7 @@ def _section(setup: Setup, look: Look, found: LookSummary, *, scene: bool) -> di
         "view": figure_address(view_figure(look, setup.objects)),
         "distances": figure_address(distance_figure(look)),
         "deviations": figure_address(deviation_figure(look)) if look.demonstration else "",
-        "joints": figure_address(joint_figure(look)),
+        "joints": figure_address(joint_figure(look)) if look.units else "",
     }
 
 
@@ -84,7 +84,7 @@ def _scene(setup: Setup, look: Look) -> str:
         meshcat = Meshcat(MeshcatParams(host="localhost", show_stats_plot=False))
         make_scene(setup, meshcat)
         draw_look(meshcat, look, setup.objects)
-        if look.recording.robot is None:
+        if look.recording.robot is None and look.units:
             animate(meshcat, Linkage(setup.workcell), look.t, look.q)
         return str(meshcat.StaticHtml())
 

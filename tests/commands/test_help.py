@@ -17,6 +17,7 @@ VERBS = [
     "init",
     "list",
     "check",
+    "import",
     "look",
     "run",
     "report",

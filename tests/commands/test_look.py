@@ -27,7 +27,7 @@ def spoilt(library: Path, tmp_path: Path) -> Path:
     copy = Path(shutil.copytree(library, tmp_path / "spoilt"))
     file = copy / "demo_02" / "object_poses.csv"
     X_WO = np.loadtxt(file, delimiter=",")
-    X_WO[1, 3] -= 2.0
+    X_WO[1, 3] -= 0.8
     np.savetxt(file, X_WO, delimiter=",")
     return copy
 

@@ -123,7 +123,7 @@ def test_no_time_column(tmp_path: Path) -> None:
     [
         ("", "no column 'time'", 1),
         ("time,shoulder,elbow\n", "0 samples", None),
-        ("time,shoulder,elbow\n0.1,0.0,0.0\n", "1 samples", None),
+        ("time,shoulder,elbow\n0.1,0.0,0.0\n", "1 sample;", None),
         (JOINTS + "0.13,0.3\n", "2 cells where the header has 3", 5),
         (JOINTS + "0.13,0.3,0.6,\n", "4 cells where the header has 3", 5),
         (JOINTS + "0.13,0.3,\n", "not a number: ''", 5),
@@ -199,7 +199,7 @@ def test_wrong_number_of_objects(tmp_path: Path) -> None:
     folder = write(tmp_path / "demo", poses=POSES + POSES)
     assert len(read(folder, objects=2).X_WO) == 2
     error = refused(folder, objects=1)
-    assert "2 object poses, where the scenario has 1 objects" in error.message
+    assert "2 object poses, where the scenario has 1 object" in error.message
     assert error.file == folder / "object_poses.csv"
 
 

@@ -48,7 +48,7 @@ def test_a_good_recording_passes_untouched_but_for_its_time() -> None:
 @pytest.mark.parametrize("m", [0, 1])
 def test_too_few_samples(m: int) -> None:
     t, q = ramp()
-    assert f"{m} samples" in refused(t[:m], q[:m]).message
+    assert f"{m} sample" in refused(t[:m], q[:m]).message
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

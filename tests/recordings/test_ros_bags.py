@@ -1,0 +1,117 @@
+"""Bags of ROS 1 and ROS 2, written by rosbags."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw.assembly.importing import read_recordings
+from drake_screw.recordings import Mapping
+
+pytest.importorskip("rosbags")
+LEFT = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
+
+
+@pytest.fixture(scope="module")
+def setup() -> Setup:
+    return Setup(load_scenario("pouring"))
+
+
+@contextmanager
+def bag(path: Path, kind: str) -> Iterator[Any]:
+    """Gives a function that writes a message of a type to a topic, at a time in s."""
+    from rosbags.rosbag1 import Writer as Writer1
+    from rosbags.rosbag2 import StoragePlugin
+    from rosbags.rosbag2 import Writer as Writer2
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC if kind == "bag" else Stores.ROS2_HUMBLE)
+    plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
+    writer = Writer1(path) if kind == "bag" else Writer2(path, version=9, storage_plugin=plugin)
+    connections: dict[str, Any] = {}
+    T = store.types
+
+    def header(t: float, frame: str = "base") -> Any:
+        stamp = T["builtin_interfaces/msg/Time"](int(t), round(t % 1 * 1e9))
+        extra = {"seq": 0} if kind == "bag" else {}
+        return T["std_msgs/msg/Header"](stamp=stamp, frame_id=frame, **extra)
+
+    with writer:
+
+        def write(topic: str, t: float, what: str, *values: Any) -> None:
+            if what == "joints":
+                name = "sensor_msgs/msg/JointState"
+                empty = np.zeros(0)
+                message = T[name](header(t), list(values[0]), np.array(values[1]), empty, empty)
+            else:
+                name = "geometry_msgs/msg/PoseStamped"
+                p = T["geometry_msgs/msg/Point"](*values[0])
+                q = T["geometry_msgs/msg/Quaternion"](*values[1])
+                message = T[name](header(t), T["geometry_msgs/msg/Pose"](p, q))
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, name, typestore=store)
+            raw = store.serialize_ros1 if kind == "bag" else store.serialize_cdr
+            writer.write(connections[topic], round(t * 1e9), raw(message, name))
+
+        yield write
+
+
+def motion() -> tuple[np.ndarray, np.ndarray]:
+    q = np.tile([0.5, -0.2, -0.7, 1.5, 1.8, -0.9, -0.5], (50, 1))
+    q[:, 0] += 0.01 * np.arange(50)
+    return 1_700_000_000.0 + 0.05 * np.arange(50), q
+
+
+@pytest.mark.parametrize("kind", ["bag", "db3", "mcap"])
+def test_joint_states_with_an_objects_pose(kind: str, setup: Setup, tmp_path: Path) -> None:
+    t, q = motion()
+    path = tmp_path / ("demo.bag" if kind == "bag" else "demo")
+    order = [6, 2, 0, 1, 3, 5, 4]
+    with bag(path, kind) as write:
+        write("/bowl", t[0], "pose", (0.8, 0.5, -0.1), (0.0, 0.0, np.sin(0.25), np.cos(0.25)))
+        for s, row in zip(t.tolist(), q, strict=True):
+            write("/joint_states", s, "joints", [LEFT[j] for j in order], row[order])
+            write("/joint_states", s, "joints", ["left_gripper"], [0.1])
+    source = path if kind == "bag" else next(path.glob(f"*.{kind}"))
+    for place in (source, path):
+        (found,) = read_recordings(place, setup, Mapping(objects={"bowl": "topic:/bowl"}))
+        assert found.recording is not None
+        np.testing.assert_allclose(found.recording.q, q)
+        np.testing.assert_allclose(found.recording.t, t - t[0], atol=1e-6)
+        assert found.recording.notes == ("left out 50 messages with the names of other joints",)
+        assert "seen from 'base'" in dict(found.facts)["object"]
+        place_found = setup.area.x_y_yaw(found.recording.X_WO)[0]
+        np.testing.assert_allclose(place_found, [0.8, 0.5, 0.5], atol=1e-12)
+
+
+def test_the_hands_poses_and_topics_that_there_are_not(setup: Setup, tmp_path: Path) -> None:
+    t, q = motion()
+    X = setup.workcell.arm.pose(q)
+    from drake_screw.screws import quaternion_from_rotation
+
+    with bag(tmp_path / "demo.bag", "bag") as write:
+        for s, X_WE in zip(t.tolist(), X, strict=True):
+            w, x, y, z = quaternion_from_rotation(X_WE[:3, :3])
+            write("/hand", s, "pose", X_WE[:3, 3], (x, y, z, w))
+    near = Mapping(objects={"bowl": (0.8, 0.5)})
+    with pytest.raises(RecordingError, match="no topic of joint states") as caught:
+        read_recordings(tmp_path / "demo.bag", setup, near)
+    assert "/hand (geometry_msgs/msg/PoseStamped)" in str(caught.value)
+    with pytest.raises(RecordingError, match="no topic '/hnd'"):
+        read_recordings(tmp_path / "demo.bag", setup, near.with_(topic="/hnd"))
+    with pytest.raises(RecordingError, match="no topic or frame '/bowl'"):
+        read_recordings(
+            tmp_path / "demo.bag",
+            setup,
+            Mapping(topic="/hand", objects={"bowl": "topic:/bowl"}),
+        )
+    (found,) = read_recordings(tmp_path / "demo.bag", setup, near.with_(topic="/hand"))
+    assert found.recording is not None
+    assert found.recording.X_WE is not None
+    np.testing.assert_allclose(found.recording.X_WE, X, atol=1e-9)
