@@ -6,13 +6,12 @@ they must share is the end effector's frame: where on the tool it sits, and how 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
@@ -21,7 +20,6 @@ from drake_screw.demonstrations import (
     Demonstration,
     FaithfulConfig,
     Look,
-    NoMotionKept,
     Recording,
     SegmentationConfig,
     look_at,
@@ -33,7 +31,6 @@ from drake_screw.demonstrations.hand_eye import check_objects
 from drake_screw.demonstrations.library import OBJECTS
 from drake_screw.demonstrations.shown import Shown, what_is_shown
 from drake_screw.errors import ModelError, RecordingError
-from drake_screw.planning import Planner
 from drake_screw.plugins import find
 from drake_screw.recordings import Robot, read_recordings
 from drake_screw.recordings.reading import holds_files
@@ -259,56 +256,6 @@ class Recorder:
             raise better from error
 
 
-@dataclass(frozen=True)
-class TriedRecordings:
-    """What a teacher finds out about recordings by planning with them; see `TriedOut`.
-
-    Attributes:
-        recorder: of the robot they were made on.
-        learning: how they become demonstrations.
-        planner: of the arm that is planned for.
-        start: (n,) rad or m, where its plans start.
-    """
-
-    recorder: Recorder
-    learning: Learning
-    planner: Planner
-    start: Array
-    _learned: dict[tuple[Path | None, str], Demonstration | None] = field(
-        default_factory=dict, repr=False
-    )
-
-    def seen(self, recording: Recording) -> Array:
-        """See `Recorder.seen`."""
-        return self.recorder.seen(recording)
-
-    def works(self, recordings: Sequence[Recording], x_y_yaw: Array) -> NDArray[np.bool_]:
-        """(M, R) whether each of R gives a plan at task instances (M, k, 3).
-
-        One of which no motion would be kept gives none.
-        """
-        learned = [self._learn(recording) for recording in recordings]
-        known = [demonstration for demonstration in learned if demonstration is not None]
-        works = np.zeros((len(x_y_yaw), len(learned)), dtype=bool)
-        works[:, [demonstration is not None for demonstration in learned]] = (
-            self.planner.all_outcomes(known, self.recorder.area.X_WO(x_y_yaw), self.start).success
-        )
-        return works
-
-    def _learn(self, recording: Recording) -> Demonstration | None:
-        key = _key(recording)
-        if key not in self._learned:
-            try:
-                self._learned[key] = self.recorder.learn(recording, self.learning)
-            except NoMotionKept:
-                self._learned[key] = None
-        return self._learned[key]
-
-
 def _moved(learned: Demonstration, X: Array) -> Demonstration:
     """A demonstration seen from another place; X (4, 4)."""
     return replace(learned, X_WO=X @ learned.X_WO, path=X @ learned.path)
-
-
-def _key(recording: Recording) -> tuple[Path | None, str]:
-    return recording.source, recording.name

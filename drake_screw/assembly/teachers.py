@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from drake_screw.acquisition import RecordedTeacher, Teacher
 from drake_screw.acquisition.simulated import SimulatedTeacher
-from drake_screw.assembly.recorder import TriedRecordings
 from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.tried_recordings import TriedRecordings
 from drake_screw.errors import ScenarioError
 
 

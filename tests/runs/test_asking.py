@@ -11,8 +11,8 @@ import pytest
 
 from drake_screw.acquisition import DemonstrationRequested, Event, RoundFinished, Suggestion
 from drake_screw.acquisition.asking import densest
-from drake_screw.assembly.recorder import TriedRecordings
 from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.tried_recordings import TriedRecordings
 from drake_screw.demonstrations import write_recording
 from drake_screw.errors import PluginError, RunDirectoryError
 from drake_screw.runs.run import new_run, open_run
