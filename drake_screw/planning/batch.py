@@ -36,9 +36,9 @@ class BatchPlanner:
 
     Args:
         chain: the arm.
-        tolerance: rad (or m), error allowed in one step of the joint path.
+        tolerance: rad (or m), error allowed in one step of the path.
         threads: to use; all processors if None.
-        symmetries: of the objects and the tool; of none if None.
+        symmetries: of the objects and the tool.
         seeds: (S, n) configurations from which inverse kinematics of the first guiding pose sets
             out where the screw from the start fails: the approach is free then. None where every
             motion is along a screw.
@@ -217,7 +217,7 @@ class BatchPlanner:
             own = slice(len(plans), len(plans) + len(answers.cause))
             found = columns.of_columns(answers, column[own])
             plans += joint_paths(
-                found, answers.trace, starts[own], limits, guides[own], angles[own]
+                found, answers.trace, starts[own], limits, guides[own], angles[own], self.free_axis
             )
         return tuple(
             approached(plan, q_start) if columns.begins[c] else plan

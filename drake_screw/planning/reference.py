@@ -23,7 +23,7 @@ from drake_screw.planning.contract import (
     away_from_limits,
     motion_size,
 )
-from drake_screw.planning.outcomes import Cause, Plan, one_outcome
+from drake_screw.planning.outcomes import Cause, Outcomes, Plan, one_outcome
 from drake_screw.planning.roll import along_roll_free, free_frame, rolled, turned_apart
 from drake_screw.robot.arm import Arm
 from drake_screw.screws import exp, inverse, log, shift, translation_distance
@@ -56,7 +56,7 @@ class ReferencePlanner:
         free_axis: ArrayLike | None = None,
     ) -> None:
         self.arm = arm
-        self.free_axis = free_axis
+        self.free_axis = None if free_axis is None else np.asarray(free_axis, dtype=float)
         self._X_EF = np.eye(4) if free_axis is None else free_frame(free_axis)
         self._directions = 6 if free_axis is None else 5
         self.redundancy = redundancy
@@ -85,7 +85,7 @@ class ReferencePlanner:
         margin = self.arm.margin(path[0])
         if (margin <= 0.0).any():
             outcome = one_outcome(Cause.JOINT_LIMIT, 0, int(np.argmin(margin)), 0.0)
-            return Plan(path[0][None], np.array(segments), np.array(fractions), outcome, guides)
+            return self._plan(path, segments, fractions, outcome, guides)
         begins = [self.arm.pose(path[0]), *guides]
         for segment, (X_WA, X_WG) in enumerate(zip(begins, guides, strict=False)):
             points, s, cause, joint = self._follow(path[-1], X_WA, X_WG)
@@ -95,7 +95,19 @@ class ReferencePlanner:
             if cause != Cause.SUCCESS:
                 outcome = one_outcome(cause, segment, joint, s[-1] if s else 0.0)
                 break
-        return Plan(np.array(path), np.array(segments), np.array(fractions), outcome, guides)
+        return self._plan(path, segments, fractions, outcome, guides)
+
+    def _plan(
+        self,
+        path: list[Array],
+        segments: list[int],
+        fractions: list[float],
+        outcome: Outcomes,
+        guides: Array,
+    ) -> Plan:
+        """A plan of its points."""
+        where = np.array(path), np.array(segments), np.array(fractions)
+        return Plan(*where, outcome, guides, free_axis=self.free_axis)
 
     def _follow(
         self, q: Array, X_WA: Array, X_WG: Array

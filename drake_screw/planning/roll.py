@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from drake_screw.screws import pose, rotation_angle
+from drake_screw.screws import inverse, pose, rotation_angle
 from drake_screw.typing import Array
 
 
@@ -47,6 +47,19 @@ def rolled(X_WF: Array, X_WS: Array, X_WG: Array) -> Array:
     x, y = X_WG[..., :3, 0], X_WG[..., :3, 1]
     found[..., :3, 0], found[..., :3, 1] = c * x + s * y, c * y - s * x
     return found
+
+
+def turned_along(X_WE: Array, X_WS: Array, free_axis: ArrayLike | None) -> Array:
+    """Set points X_WS (..., 4, 4) of the end effector, rolled as it is at X_WE (..., 4, 4).
+
+    Args:
+        X_WE, X_WS: the poses.
+        free_axis: (3,) in E, about which the roll does not count; None where all of it does.
+    """
+    if free_axis is None:
+        return X_WS
+    X_EF = free_frame(free_axis)
+    return rolled(X_WE @ X_EF, X_WS @ X_EF, X_WS @ X_EF) @ inverse(X_EF)
 
 
 def axes_apart(X_WA: Array, X_WB: Array) -> Array:
