@@ -28,12 +28,13 @@ def free_frame(axis: ArrayLike) -> Array:
 
 
 def along_roll_free(X_WF: Array) -> Array:
-    """(5, 6) the directions that count, of twists [w; v] in W about F's origin.
+    """(..., 5, 6) the directions that count, of twists [w; v] in W about F's origin.
 
     They are the turns about F's x and y axis, and the shifts along those of W.
     """
-    P = np.zeros((5, 6))
-    P[:2, :3], P[2:, 3:] = X_WF[:3, :2].T, np.eye(3)
+    P = np.zeros((*X_WF.shape[:-2], 5, 6))
+    P[..., :2, :3] = np.swapaxes(X_WF[..., :3, :2], -1, -2)
+    P[..., 2:, 3:] = np.eye(3)
     return P
 
 
