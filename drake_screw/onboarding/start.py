@@ -67,8 +67,8 @@ def starts(
         within: where configurations are looked for.
         area: the work area as it is known so far.
         top: m, the table's height.
-        task: "pouring" or "scooping".
         count: most to return.
+        task: "pouring" or "scooping", for which an axis to roll about is chosen.
     """
     p, z = _targets(chain.shoulder, area, top)
     bank = spread(within, 3000)

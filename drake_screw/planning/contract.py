@@ -41,8 +41,8 @@ With six joints or fewer that means that the path leads through a singularity in
 """
 
 Task = Literal["pose", "position_and_axis"]
-"""What is followed: the end effector's pose, or its origin and one of its axes, about which its roll
-is free then (see `roll`)."""
+"""What is followed: the end effector's pose, or its origin and one of its axes, about which its
+roll is free then (see `roll`)."""
 
 STILL = 1e-6
 """rad. Size that a segment has at least in which the roll is free: one that only rolls has none."""

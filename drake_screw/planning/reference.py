@@ -211,8 +211,7 @@ class ReferencePlanner:
         if self.arm.n > self._directions:
             return False
         J, J_moved = (
-            self._along(X_WE) @ J_WE
-            for X_WE, J_WE in map(self.arm.pose_and_jacobian, (q, moved))
+            self._along(X_WE) @ J_WE for X_WE, J_WE in map(self.arm.pose_and_jacobian, (q, moved))
         )
         return bool(np.linalg.det(J.T @ J_moved) < -ORIENTATION_MIN)
 

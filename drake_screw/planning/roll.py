@@ -1,8 +1,8 @@
 """What is left of following a pose where the roll about an axis of the hand is free.
 
 The end effector's origin and that axis follow the recorded screw; how far the hand is turned about
-the axis, its roll, is whatever the joints make of it. Of two poses that agree in origin and axis one
-is the other one rolled, so that the recorded motion, rolled by where the hand is, is again one
+the axis, its roll, is whatever the joints make of it. Of two poses that agree in origin and axis
+one is the other one rolled, so that the recorded motion, rolled by where the hand is, is again one
 screw, and carries origin and axis along just the same.
 """
 

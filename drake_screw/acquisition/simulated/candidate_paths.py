@@ -93,9 +93,7 @@ def follow_key_poses(
     return CandidatePaths(np.stack(points, axis=1), np.array(segments), arrived)
 
 
-def _asked(
-    J: Array, target: Array, X_WE: Array, free_axis: Array | None
-) -> tuple[Array, Array]:
+def _asked(J: Array, target: Array, X_WE: Array, free_axis: Array | None) -> tuple[Array, Array]:
     """Jacobians (c, d, n) and twists (c, d) in the directions that the hand is led in."""
     V = log(turned_along(X_WE, target, free_axis) @ inverse(X_WE))
     if free_axis is None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from drake_screw.planning.compiled.crossing import first_crossing
 from drake_screw.planning.compiled.inner import inner
+from drake_screw.planning.compiled.rolling import roll_target
 from drake_screw.planning.compiled.rows import (
     ACCEPTED,
     AIM,
@@ -32,7 +33,6 @@ from drake_screw.planning.compiled.rows import (
     TARGET,
     at,
 )
-from drake_screw.planning.compiled.rolling import roll_target
 from drake_screw.planning.compiled.trace import ALL, NOTHING, Trace, keep_plan, trace_step
 from drake_screw.planning.contract import POSITION_TOLERANCE, ROTATION_TOLERANCE
 from drake_screw.planning.outcomes import Cause

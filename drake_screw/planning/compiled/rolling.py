@@ -1,4 +1,4 @@
-"""Where the roll is free: a lane's guiding pose, rolled as far as the hand is when a segment begins.
+"""Where the roll is free: a lane's guiding pose, rolled as far as the hand is as a segment begins.
 
 Compiled as part of the code of an arm (kernel.py), and not on its own.
 """
