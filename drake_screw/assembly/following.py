@@ -47,8 +47,8 @@ def cannot_follow(scenario: Scenario, arm: Arm) -> Iterator[str]:
             return
         yield (
             f"{how_many}: the hand cannot be turned and moved in all six directions, and a "
-            "screw in general cannot be followed: plans fail as out of reach where the bodies' places ask "
-            f"for another{_lacks(arm, np.array(scenario.robot.start, dtype=float))}"
+            "screw in general cannot be followed: plans fail as out of reach where "
+            f"the bodies' places ask for another{_lacks(arm, np.array(scenario.robot.start, dtype=float))}"
         )
         usable = [name for name, vector in AXES.items() if has(chain, vector)]
         if usable:
