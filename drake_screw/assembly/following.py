@@ -10,7 +10,6 @@ from drake_screw.robot import Arm
 from drake_screw.robot.directions import has, missing_turn
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.values import AXES
-from drake_screw.typing import Array
 
 LETTERS = {vector: name for name, vector in AXES.items()}
 
@@ -48,7 +47,7 @@ def cannot_follow(scenario: Scenario, arm: Arm) -> Iterator[str]:
         yield (
             f"{how_many}: the hand cannot be turned and moved in all six directions, and a "
             "screw in general cannot be followed: plans fail as out of reach where "
-            f"the bodies' places ask for another{_lacks(arm, np.array(scenario.robot.start, dtype=float))}"
+            f"the bodies' places ask for another{_lacks(arm, scenario.robot.start)}"
         )
         usable = [name for name, vector in AXES.items() if has(chain, vector)]
         if usable:
@@ -80,11 +79,11 @@ def _no_axis(arm: Arm, axis: tuple[float, float, float], how_many: str) -> str:
     )
 
 
-def _lacks(arm: Arm, q: Array) -> str:
+def _lacks(arm: Arm, q: tuple[float, ...]) -> str:
     """Which turn an arm of five joints lacks at q (n,), as the end of a sentence; "" of others."""
     if arm.n != 5:
         return ""
-    turn = missing_turn(arm.screw_chain(), q[None])[0]
+    turn = missing_turn(arm.screw_chain(), [q])[0]
     if np.linalg.norm(turn) < 0.1:
         return ""
     axis = ", ".join(f"{v:.2f}" for v in turn / np.linalg.norm(turn))
