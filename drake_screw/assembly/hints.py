@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from drake_screw.assembly.following import cannot_follow, free_roll
 from drake_screw.robot import Arm
 from drake_screw.scenario.schema import Scenario
 
@@ -10,7 +11,12 @@ SHORT = 1.0
 
 
 def hints(scenario: Scenario, arm: Arm) -> tuple[str, ...]:
-    """Sentences on what is likely to go wrong, and what to do about it."""
+    """Sentences on what is left free, or likely to go wrong, and what to do about it."""
+    free = free_roll(scenario)
+    return (*([free] if free else []), *cannot_follow(scenario, arm), *_short_slides(scenario, arm))
+
+
+def _short_slides(scenario: Scenario, arm: Arm) -> tuple[str, ...]:
     if arm.n <= 6 or scenario.planner.redundancy != "least_norm":
         return ()
     ranges = zip(arm.joint_names, arm.slides, arm.upper - arm.lower, strict=True)

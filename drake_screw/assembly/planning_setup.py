@@ -134,6 +134,7 @@ class PlanningSetup:
             symmetries=self.symmetries,
             seeds=seeds(chain, block.ik_seeds) if block.approach == "free" else None,
             redundancy=block.redundancy,
+            free_axis=block.roll_axis,
         )
 
     @cached_property

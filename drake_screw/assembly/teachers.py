@@ -11,7 +11,8 @@ from drake_screw.errors import ScenarioError
 
 def simulated(setup: Setup) -> Teacher:
     """A teacher who leads the arm as people do, and shows the scenario's motion."""
-    return SimulatedTeacher(setup.workcell, setup.area, setup.motion)
+    free_axis = setup.scenario.planner.roll_axis
+    return SimulatedTeacher(setup.workcell, setup.area, setup.motion, free_axis)
 
 
 def recorded(setup: Setup) -> Teacher:

@@ -23,6 +23,7 @@ from drake_screw.execution.monitoring import (
 )
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
+from drake_screw.planning.roll import along_roll_free, free_frame, turned_along
 from drake_screw.robot import Arm
 from drake_screw.screws import shift
 from drake_screw.typing import Array
@@ -66,7 +67,8 @@ class _Memory:
 class ScrewPlanExecutor(LeafSystem):
     """Leads an arm's end effector along the constant screws of a plan.
 
-    A free approach in front of them is followed joint by joint.
+    A free approach in front of them is followed joint by joint. Where the roll about an axis of the
+    hand is free, its position and that axis are led, and the roll is drawn to the planned path's.
 
     Every control period it takes the set point of the current segment, a pose on the constant
     screw under the plan's time law and the screw's twist, and turns it into joint velocities by
@@ -175,10 +177,10 @@ class ScrewPlanExecutor(LeafSystem):
             reason = f"the arm is blocked: {how_far}"
             return replace(memory, q=measured, status=failed(now.segment, reason))
         X_WE, J_WE = arm.pose_and_jacobian(q)
-        X_WS = plan.segments[now.segment].pose(now.s)
+        X_WS = turned_along(X_WE, plan.segments[now.segment].pose(now.s), plan.free_axis)
         ended = arrival(plan, t, arm.pose(measured), allowed) if t >= plan.duration else None
         if plan.segments[now.segment].screw:
-            ended = ended or out_of_reach(now.segment, X_WE, X_WS, allowed)
+            ended = ended or out_of_reach(now.segment, X_WE, X_WS, allowed, plan.free_axis)
         if ended is not None:
             return replace(memory, status=ended)
         if not plan.segments[ahead.segment].screw:
@@ -187,6 +189,9 @@ class ScrewPlanExecutor(LeafSystem):
         V_WS = ahead.rate * plan.segments[ahead.segment].twist
         V_WE = shift(V_WS, X_WE[:3, 3]) + self.control.pose_gain * _difference(X_WE, X_WS)
         self._parameters.set_nominal_joint_position(ahead.q)
+        if plan.free_axis is not None:
+            P = along_roll_free(X_WE @ free_frame(plan.free_axis))
+            V_WE, J_WE = P @ V_WE, P @ J_WE
         V, J = _possible(V_WE, J_WE)
         solution = DoDifferentialInverseKinematics(q, memory.v, V, J, self._parameters)
         if solution.status == DifferentialInverseKinematicsStatus.kSolutionFound:
@@ -211,7 +216,7 @@ def _parameters(arm: Arm, control: Control) -> DifferentialInverseKinematicsPara
 
 
 def _possible(V_WE: Array, J_WE: Array) -> tuple[Array, Array]:
-    """The part of a twist (6,) that an arm of fewer than six joints can give.
+    """The part of a twist (d,) that an arm of fewer joints than d can give.
 
     Drake's solver wants the twist exactly, and stands still at a rounding error in a direction in
     which the arm cannot move.
@@ -219,7 +224,7 @@ def _possible(V_WE: Array, J_WE: Array) -> tuple[Array, Array]:
     Returns:
         V (m,) and J (m, n) in m directions in which it can.
     """
-    if J_WE.shape[1] >= 6:
+    if J_WE.shape[1] >= len(J_WE):
         return V_WE, J_WE
     U, size, _ = np.linalg.svd(J_WE, full_matrices=False)
     directions = U[:, size > SINGULAR * size[0]].T

@@ -9,6 +9,7 @@ import numpy as np
 
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
+from drake_screw.planning.roll import turned_apart
 from drake_screw.robot import Arm
 from drake_screw.typing import Array
 
@@ -104,8 +105,13 @@ def worst_lag(lags: Array, q: Array, measured: Array) -> tuple[bool, int, float]
     return bool(lag[joint] > lags[joint]), joint, float(lag[joint])
 
 
-def apart(X_WA: Array, X_WB: Array) -> tuple[float, float]:
-    """Distance in m and angle in rad between two poses (4, 4); quick, for angles below pi."""
+def apart(X_WA: Array, X_WB: Array, free_axis: Array | None = None) -> tuple[float, float]:
+    """Distance in m and angle in rad between two poses (4, 4); quick, for angles below pi.
+
+    Where the roll about an axis (3,) of theirs is free, it is the angle between these axes.
+    """
+    if free_axis is not None:
+        return math.dist(X_WA[:3, 3], X_WB[:3, 3]), float(turned_apart(X_WA, X_WB, free_axis))
     R = X_WA[:3, :3].T @ X_WB[:3, :3]
     sine = math.hypot(R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1])
     return math.dist(X_WA[:3, 3], X_WB[:3, 3]), math.atan2(sine, np.trace(R) - 1.0)
@@ -118,7 +124,7 @@ def arrival(
     if t < plan.duration:
         return None
     last = len(plan.segments) - 1
-    far, turned = apart(X_WE, plan.segments[last].X_WB)
+    far, turned = apart(X_WE, plan.segments[last].X_WB, plan.free_axis)
     if far <= tolerances.final_position and turned <= tolerances.final_rotation:
         return ExecutionStatus(Phase.DONE, last)
     if t > plan.duration + tolerances.settling:
@@ -127,10 +133,14 @@ def arrival(
 
 
 def out_of_reach(
-    segment: int, X_WE: Array, X_WS: Array, tolerances: Tolerances
+    segment: int,
+    X_WE: Array,
+    X_WS: Array,
+    tolerances: Tolerances,
+    free_axis: Array | None = None,
 ) -> ExecutionStatus | None:
     """A failure if the commanded pose X_WE (4, 4) cannot keep up with its set point X_WS."""
-    far, turned = apart(X_WE, X_WS)
+    far, turned = apart(X_WE, X_WS, free_axis)
     if far <= tolerances.position and turned <= tolerances.rotation:
         return None
     behind = _words(far, turned)

@@ -10,13 +10,13 @@ import numpy as np
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.planning.contract import CHARACTERISTIC_LENGTH
+from drake_screw.planning.roll import turned_along, turned_apart
 from drake_screw.robot import Arm
 from drake_screw.robot.arm import comparable
 from drake_screw.screws import (
     exp,
     inverse,
     log,
-    rotation_angle,
     shift,
     translation_distance,
 )
@@ -68,6 +68,7 @@ class ExecutionReport:
             segment that was begun; of a free approach from the planned path.
         contacts: of the robot with anything, itself included.
         final: of the measured end effector from the last guiding pose, when it ended.
+            All three without the roll about an axis where the plan leaves it free.
     """
 
     status: ExecutionStatus
@@ -130,17 +131,18 @@ def make_report(
             piece, here = plan.segments[i], segment == i
             if not piece.screw:
                 planned = np.stack([p.q for p, chosen in zip(points, here, strict=True) if chosen])
-                errors.append(_distances(X_WE[here], arm.pose(planned)))
+                errors.append(_distances(X_WE[here], arm.pose(planned), plan.free_axis))
                 screws.append(_deviation(errors[-1]))
                 continue
             X_WS = exp(s[here, None] * piece.twist) @ piece.X_WA
-            errors.append(_distances(X_WE[here], X_WS))
-            nearest = s[here] + _ahead(X_WE[here], X_WS, piece.twist)
+            errors.append(_distances(X_WE[here], X_WS, plan.free_axis))
+            nearest = s[here] + _ahead(X_WE[here], X_WS, piece.twist, plan.free_axis)
             nearest = np.clip(nearest, 0.0, 1.0)
             X_WN = exp(nearest[:, None] * piece.twist) @ piece.X_WA
-            screws.append(_deviation(_distances(X_WE[here], X_WN)))
+            screws.append(_deviation(_distances(X_WE[here], X_WN, plan.free_axis)))
         tracking = _deviation(np.concatenate(errors))
-        final = _deviation(_distances(arm.pose(q[-1:]), plan.segments[-1].X_WB))
+        ended, X_WB = arm.pose(q[-1:]), plan.segments[-1].X_WB[None]
+        final = _deviation(_distances(ended, X_WB, plan.free_axis))
     return ExecutionReport(
         status=status,
         planned=plan.duration,
@@ -158,13 +160,17 @@ def make_report(
     )
 
 
-def _ahead(X_WE: Array, X_WS: Array, twist: Array) -> Array:
+def _ahead(X_WE: Array, X_WS: Array, twist: Array, free_axis: Array | None) -> Array:
     """How much farther along the screw than S the frame E is (m,), by a step of Gauss-Newton.
 
     Rotations and translations are weighed by CHARACTERISTIC_LENGTH, at the end effector.
     """
+    X_WS = turned_along(X_WE, X_WS, free_axis)
     V = _at_hand(log(X_WE @ inverse(X_WS)), X_WS)
     along = _at_hand(np.broadcast_to(twist, V.shape), X_WS)
+    if free_axis is not None:
+        a = X_WS[..., :3, :3] @ (free_axis / np.linalg.norm(free_axis))
+        along[..., :3] -= np.vecdot(along[..., :3], a)[..., None] * a
     size = np.maximum(np.sum(along * along, axis=-1), 1e-12)
     return np.sum(V * along, axis=-1) / size
 
@@ -174,9 +180,10 @@ def _at_hand(V: Array, X_WS: Array) -> Array:
     return np.concatenate([V[..., :3], V[..., 3:] / CHARACTERISTIC_LENGTH], axis=-1)
 
 
-def _distances(X_WA: Array, X_WB: Array) -> Array:
-    """(m, 2) distances in m and angles in rad of poses (m, 4, 4)."""
-    return np.stack([translation_distance(X_WA, X_WB), rotation_angle(X_WA, X_WB)], axis=-1)
+def _distances(X_WA: Array, X_WB: Array, free_axis: Array | None) -> Array:
+    """(m, 2) distances in m and angles in rad of poses (m, 4, 4), as far as their roll counts."""
+    turned = turned_apart(X_WA, X_WB, free_axis)
+    return np.stack([translation_distance(X_WA, X_WB), turned], axis=-1)
 
 
 def _deviation(distances: Array) -> Deviation:

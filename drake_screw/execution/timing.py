@@ -119,9 +119,12 @@ class TimedPlan:
 
     Attributes:
         segments: in their order; none for an empty plan.
+        free_axis: (3,) in the end effector's frame, about which its roll is free: of the screws it
+            follows position and that axis. None where it follows them as a whole.
     """
 
     segments: tuple[TimedSegment, ...]
+    free_axis: Array | None = None
 
     def __deepcopy__(self, _: object) -> TimedPlan:
         return self
@@ -188,7 +191,7 @@ def time_plan(
         piece = _timed(X_WA, X_WB, s, q, arm, limits)
         pieces.append(replace(piece, screw=i > 0 or not plan.approach))
         start = q[-1]
-    return TimedPlan(tuple(pieces))
+    return TimedPlan(tuple(pieces), plan.free_axis)
 
 
 def _timed(

@@ -52,7 +52,14 @@ def ros_trajectory(plan: TimedPlan, arm: Arm) -> bytes:
 
 
 def npz(plan: TimedPlan, arm: Arm) -> bytes:
-    """Arrays t, s, segment (m,), q, v (m, n), X_WE (g + 1, 4, 4) and joint_names (n,)."""
+    """Arrays t, s, segment (m,), q, v (m, n), X_WE (g + 1, 4, 4) and joint_names (n,).
+
+    Where the hand's roll about an axis is free, X_WE is rolled as the arm is there.
+    """
+    X_WE = plan.poses
+    if plan.free_axis is not None:
+        q_ends = np.stack([plan.segments[0].q[0], *(piece.q[-1] for piece in plan.segments)])
+        X_WE = arm.pose(q_ends)
     t, q, v = plan.sampled(PERIOD)
     points = [plan.at(float(time)) for time in t]
     file = io.BytesIO()
@@ -63,7 +70,7 @@ def npz(plan: TimedPlan, arm: Arm) -> bytes:
         v=v,
         segment=np.array([p.segment for p in points]),
         s=np.array([p.s for p in points]),
-        X_WE=plan.poses,
+        X_WE=X_WE,
         joint_names=np.array(arm.joint_names),
     )
     return file.getvalue()

@@ -237,7 +237,7 @@ def _likely(reach: ReachMap, chain: ScrewChain) -> Rectangle | None:
 
 def _trial(bare: RobotConfig, start: Start, table: TableConfig, top: float, task: str) -> Trial:
     workcell = build_workcell(replace(bare, start=start.q), table=table, objects=[BOWL])
-    return Trial(workcell, task, top)
+    return Trial(workcell, task, top, free_axis=start.free_axis)
 
 
 def _best_start(
@@ -254,13 +254,14 @@ def _best_start(
     """Of some starts the one from which one demonstration covers the largest rectangle."""
     table = table_under(likely, top, around_the_base=on_it)
     workcell = build_workcell(bare, table=table, objects=[BOWL])
-    found = starts(workcell, chain, within, likely, top, STARTS)
+    found = starts(workcell, chain, within, likely, top, STARTS, task)
     say(f"{len(found)} configurations to start from are tried")
     corner = farthest_corner(likely, chain.shoulder)
     best: tuple[float, Start, Survey] | None = None
     for number, start in enumerate(found):
         placed = replace(workcell, start=np.array(start.q))
-        seen = survey(Trial(placed, task, top), reach.x, reach.y, np.array([corner]))
+        trial = Trial(placed, task, top, free_axis=start.free_axis)
+        seen = survey(trial, reach.x, reach.y, np.array([corner]))
         size = _size(seen, chain)
         say(f"  start {number + 1}: one demonstration covers {size:.2f} m²")
         if best is None or size > 1.05 * best[0]:
@@ -272,7 +273,8 @@ def _best_start(
     size, start, seen = best
     placed = replace(workcell, start=np.array(start.q))
     nearer = [[x, y] for x in (likely.x[1] - NEARER, sum(likely.x) / 2.0) for y in likely.y]
-    again = survey(Trial(placed, task, top), reach.x, reach.y, np.array(nearer))
+    trial = Trial(placed, task, top, free_axis=start.free_axis)
+    again = survey(trial, reach.x, reach.y, np.array(nearer))
     return start, max(seen, again, key=lambda s: _size(s, chain))
 
 

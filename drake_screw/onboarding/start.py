@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from drake_screw.onboarding.free_axis import free_axis
 from drake_screw.onboarding.hand_ik import Range, kinematics, nearest_seeds, solve, spread
 from drake_screw.onboarding.rectangles import Rectangle
 from drake_screw.robot import ScrewChain, Workcell
@@ -38,15 +39,25 @@ DIGITS = 3
 
 @dataclass(frozen=True)
 class Start:
-    """A configuration (n,) rad or m, its distance from the limits, and a score."""
+    """A configuration (n,) rad or m, its distance from the limits, and a score.
+
+    With fewer joints than six, the axis of the hand about which its roll is to be free.
+    """
 
     q: tuple[float, ...]
     margin: float
     score: float
+    free_axis: tuple[float, float, float] | None = None
 
 
 def starts(
-    workcell: Workcell, chain: ScrewChain, within: Range, area: Rectangle, top: float, count: int
+    workcell: Workcell,
+    chain: ScrewChain,
+    within: Range,
+    area: Rectangle,
+    top: float,
+    count: int,
+    task: str,
 ) -> list[Start]:
     """The best configurations to start from, unlike one another, the best first.
 
@@ -57,6 +68,7 @@ def starts(
         area: the work area as it is known so far.
         top: m, the table's height.
         count: most to return.
+        task: "pouring" or "scooping", for which an axis to roll about is chosen.
     """
     p, z = _targets(chain.shoulder, area, top)
     bank = spread(within, 3000)
@@ -72,18 +84,23 @@ def starts(
     q, margin = q[margin >= LEAST], margin[margin >= LEAST]
     score = np.minimum(margin, COMFORT) + _agility(chain, q) + 0.3 * _elbow(chain, q)
     score -= 0.5 * np.abs(chain.pose(q)[:, 1, 3] - sum(area.y) / 2.0)
-    found: list[Start] = []
     away = np.arange(1.0, len(workcell.objects) + 1)[:, None] * [0.0, 0.0, 1e3]
     X_WO = pose(np.eye(3), away)
     checker = workcell.checker.Clone()
-    checker.SetPaddingAllRobotEnvironmentPairs(CLEARANCE)
-    for i in np.argsort(-score):
-        if any(np.abs(q[i] - other.q).max() < APART for other in found):
-            continue
-        if workcell.collides(q[i : i + 1], X_WO, checker=checker)[0]:
-            continue
-        found.append(Start(tuple(map(float, q[i] + 0.0)), float(margin[i]), float(score[i])))
-        if len(found) == count:
+    for clearance in (CLEARANCE, CLEARANCE / 10.0):  # the shoulder of a small arm is near the table
+        checker.SetPaddingAllRobotEnvironmentPairs(clearance)
+        found: list[Start] = []
+        for i in np.argsort(-score):
+            if any(np.abs(q[i] - other.q).max() < APART for other in found):
+                continue
+            if workcell.collides(q[i : i + 1], X_WO, checker=checker)[0]:
+                continue
+            start = tuple(map(float, q[i] + 0.0))
+            axis = free_axis(chain, start, task)
+            found.append(Start(start, float(margin[i]), float(score[i]), axis))
+            if len(found) == count:
+                break
+        if found:
             break
     return found
 

@@ -27,17 +27,26 @@ class Trial:
         motion: of the simulated teacher.
         z: m, height of the bowl's bottom.
         seed: of the teacher.
+        free_axis: in the end effector's frame, about which its roll is free; None where none is.
     """
 
-    def __init__(self, workcell: Workcell, motion: str, z: float, seed: int = 0) -> None:
+    def __init__(
+        self,
+        workcell: Workcell,
+        motion: str,
+        z: float,
+        seed: int = 0,
+        free_axis: tuple[float, float, float] | None = None,
+    ) -> None:
         self.workcell = workcell
         self.remark = ""
         arm, chain = workcell.arm, workcell.arm.screw_chain()
         self.area = WorkArea((ObjectArea("bowl", (-9.0, -9.0, 0.0), (9.0, 9.0, 0.0), z),))
         self._seed = seed
-        self._teacher = SimulatedTeacher(workcell, self.area, motion)
+        self._teacher = SimulatedTeacher(workcell, self.area, motion, free_axis)
         self._recorder = Recorder(arm, arm, self.area)
-        planner = BatchPlanner(chain, symmetries=Symmetries.of(chain, [ROUND]))
+        symmetries = Symmetries.of(chain, [ROUND])
+        planner = BatchPlanner(chain, symmetries=symmetries, free_axis=free_axis)
         self._planner = CollisionFreePlanner(planner, workcell)
 
     def demonstration(self, x: float, y: float) -> Demonstration | None:

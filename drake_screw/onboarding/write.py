@@ -99,6 +99,7 @@ def scenario_text(design: Design, name: str, folder: Path, command: str) -> str:
         f"  motion: {design.task}            # pouring or scooping",
         "",
         "planner:",
+        *_free_axis(design),
         "  collision: true            # a plan fails along which the robot touches anything",
         *_unseen(design),
         "",
@@ -129,11 +130,30 @@ def assumptions(design: Design) -> list[str]:
     lines.append(
         f"start: {design.start.margin:.2f} rad from the limits, the hand level (robot.start)"
     )
+    if (axis := design.start.free_axis) is not None:
+        lines.append(
+            f"free: the roll about the hand's axis [{_numbers(axis)}], for want of a sixth joint "
+            "(planner.task, planner.free_axis)"
+        )
     lines.append(
         f"work area: x {_range(found.area.x)} m, y {_range(found.area.y)} m; one simulated "
         f"demonstration covers {found.share:.1%} of it (objects.0.x and y)"
     )
     return [*lines, *(f"note: {remark}" for remark in design.remarks)]
+
+
+def _free_axis(design: Design) -> list[str]:
+    axis = design.start.free_axis
+    if axis is None:
+        return []
+    return [
+        "  # Five joints cannot give the hand all six motions: its position and one axis of it are",
+        "  # followed, and the roll about that axis is whatever the joints make of it. The axis is",
+        f"  # the one that this arm follows best while {design.task}, in the end effector's frame;",
+        "  # x, y or z may be written as well. Not followed is how the hand turns about it.",
+        "  task: position_and_axis",
+        f"  free_axis: [{_numbers(axis)}]",
+    ]
 
 
 def scenario_name(robot: str) -> str:

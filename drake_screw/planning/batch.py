@@ -36,13 +36,14 @@ class BatchPlanner:
 
     Args:
         chain: the arm.
-        tolerance: rad (or m), error allowed in one step of the joint path.
+        tolerance: rad (or m), error allowed in one step of the path.
         threads: to use; all processors if None.
-        symmetries: of the objects and the tool; of none if None.
+        symmetries: of the objects and the tool.
         seeds: (S, n) configurations from which inverse kinematics of the first guiding pose sets
             out where the screw from the start fails: the approach is free then. None where every
             motion is along a screw.
         redundancy: what more joints than six do with the motion that the end effector leaves free.
+        free_axis: (3,) in E, about which the end effector's roll is free; None where none is.
 
     Attributes:
         checker: of what successes must not touch; None where collisions are not looked at.
@@ -58,6 +59,7 @@ class BatchPlanner:
         symmetries: Symmetries | None = None,
         seeds: Array | None = None,
         redundancy: Redundancy = "least_norm",
+        free_axis: ArrayLike | None = None,
     ) -> None:
         self.chain = chain
         self.seeds = np.zeros((0, chain.n)) if seeds is None else seeds
@@ -65,9 +67,11 @@ class BatchPlanner:
         self.symmetries = symmetries or Symmetries()
         self.threads = threads or os.cpu_count() or 1
         self.evaluations, self.redundancy = 0, redundancy
+        self.free_axis = None if free_axis is None else np.asarray(free_axis, dtype=float)
         self.checker: SweptChecker | None = None
         settings = Settings(tolerance=tolerance or Settings.tolerance, redundancy=redundancy)
-        self._kernel = Kernel(chain.screws, chain.home, chain.lower, chain.upper, settings)
+        ranges = chain.lower, chain.upper
+        self._kernel = Kernel(chain.screws, chain.home, *ranges, settings, self.free_axis)
 
     def checked(self, checker: SweptChecker) -> BatchPlanner:
         """The same planner, whose successes touch nothing by that checker."""
@@ -213,7 +217,7 @@ class BatchPlanner:
             own = slice(len(plans), len(plans) + len(answers.cause))
             found = columns.of_columns(answers, column[own])
             plans += joint_paths(
-                found, answers.trace, starts[own], limits, guides[own], angles[own]
+                found, answers.trace, starts[own], limits, guides[own], angles[own], self.free_axis
             )
         return tuple(
             approached(plan, q_start) if columns.begins[c] else plan

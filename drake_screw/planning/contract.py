@@ -40,9 +40,16 @@ ORIENTATION_MIN = 1e-14
 With six joints or fewer that means that the path leads through a singularity in between.
 """
 
+Task = Literal["pose", "position_and_axis"]
+"""What is followed: the end effector's pose, or its origin and one of its axes, about which its
+roll is free then (see `roll`)."""
+
+STILL = 1e-6
+"""rad. Size that a segment has at least in which the roll is free: one that only rolls has none."""
+
 Redundancy = Literal["least_norm", "away_from_limits"]
-"""What more joints than six do with the motion that the end effector leaves free: none of it, or
-away from the joint limits (`away_from_limits`)."""
+"""What more joints than six, or than five where the roll is free, do with the motion that the end
+effector leaves free: none of it, or away from the joint limits (`away_from_limits`)."""
 
 CENTRING = 1.0
 """Joint motion away from limits, for a unit of the joint motion that the end effector needs."""

@@ -188,6 +188,8 @@ class Plan:
             about its axis; () where nothing is known of turns.
         approach: whether the first segment is any joint motion to the first guiding pose instead of
             a screw.
+        free_axis: (3,) in the end effector's frame, about which its roll is free: at guiding poses
+            it may be turned about that axis by any angle. None where its whole pose is followed.
     """
 
     q: Array
@@ -197,6 +199,7 @@ class Plan:
     guides: Array
     angles: Array = field(default_factory=lambda: np.zeros(0))
     approach: bool = False
+    free_axis: Array | None = None
 
     @property
     def success(self) -> bool:

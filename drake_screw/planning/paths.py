@@ -28,6 +28,7 @@ def joint_paths(
     limits: Array,
     guides: Sequence[Array],
     angles: Array,
+    free_axis: Array | None = None,
 ) -> tuple[Plan, ...]:
     """Sample the paths of plans.
 
@@ -40,6 +41,7 @@ def joint_paths(
         q_start: (N, n) rad or m, where each starts.
         limits: (2, n) lower and upper joint limits.
         guides, angles: of each plan, as it has them.
+        free_axis: of all plans, as they have it.
     """
     parts = _parts(trace)
     step = np.repeat(np.arange(len(parts)), parts)
@@ -58,7 +60,8 @@ def joint_paths(
             path[-1, joint] = limits[nearer, joint]
         segment = np.concatenate([[0], trace.segment[step[own]]])
         along = np.concatenate([[0.0], s[own]])
-        plans.append(Plan(path, segment, along, outcome, guides[i], angles[i]))
+        what = outcome, guides[i], angles[i]
+        plans.append(Plan(path, segment, along, *what, free_axis=free_axis))
     return tuple(plans)
 
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from drake_screw.acquisition import Finished, Status
+from drake_screw.assembly.following import free_roll
 from drake_screw.assembly.freedoms import Freedom, freedoms
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits.spending import attempt_delta
@@ -45,6 +46,7 @@ class Certificate:
         delta_of_attempt: its share of delta.
         ignored_collisions: pairs of links that may touch.
         freedoms: symmetries that were taken for granted.
+        free_roll: what of the hand's motion was not followed, in a sentence; None where all was.
         approach: how the arm comes to the first guiding pose: "screw", or "free" for any joint
             motion.
         led_around: whether an arm was led around what a free approach touches, for which OMPL has
@@ -79,6 +81,7 @@ class Certificate:
     ignored_collisions: tuple[tuple[str, str], ...] = ()
     incomplete_shapes: tuple[str, ...] = ()
     freedoms: tuple[Freedom, ...] = ()
+    free_roll: str | None = None
     approach: Literal["screw", "free"] = "screw"
     led_around: bool | None = None
     kept_position: float | None = None
@@ -112,7 +115,8 @@ class Certificate:
                 f"time ({held}).",
                 f"Of the weakest region: {self.claim}.",
             ]
-        freedoms = map(str, self.freedoms)
+        free_roll = () if self.free_roll is None else (self.free_roll,)
+        freedoms = (*free_roll, *map(str, self.freedoms))
         scope = self._scope(), *self._ignored()
         return (*shown, *scope, *freedoms, *self._fidelity(), self._evidence())
 
@@ -240,6 +244,7 @@ def certificate(
         strategy=bandit.name,
         guarantee=bandit.guarantee,
         freedoms=freedoms(setup.scenario),
+        free_roll=free_roll(setup.scenario),
         approach=setup.scenario.planner.approach,
         led_around=led_around,
         kept_position=_largest(finished, "position"),

@@ -12,8 +12,10 @@ from pydantic_core import InitErrorDetails
 from drake_screw.plugins import BUILT_IN, is_plugged_in
 from drake_screw.scenario.block import Block, Problem
 from drake_screw.scenario.values import (
+    AXES,
     METRES,
     RADIANS,
+    Axis,
     Folder,
     OneOf,
     Option,
@@ -170,6 +172,12 @@ class TeacherBlock(Block):
 
 
 class PlannerBlock(Block):
+    task: Literal["pose", "position_and_axis"] = "pose"
+    """what of the end effector follows the screws: its whole pose, or its position and the
+    direction of its `free_axis`, for arms of five joints; the roll about that axis is free then"""
+    free_axis: Axis | None = None
+    """axis of the end effector's frame about which its roll is free with `position_and_axis`, as a
+    letter or a vector; z, out of the hand, where left out"""
     tolerance: Annotated[Annotated[float, Field(ge=1e-9, lt=0.1)], RADIANS] = 1e-4
     """error per step of the joint path"""
     turns: Annotated[int, Field(ge=1, le=360)] = 24
@@ -197,7 +205,20 @@ class PlannerBlock(Block):
     slide_margin: Annotated[Annotated[float, Field(ge=0.0, lt=3.0)], METRES] = 0.0
     """distance that prismatic joints have to keep from their limits"""
 
+    @property
+    def roll_axis(self) -> tuple[float, float, float] | None:
+        """In the end effector's frame, about which its roll is free; None where none is."""
+        if self.task == "pose":
+            return None
+        return AXES["z"] if self.free_axis is None else self.free_axis
+
     def broken_rules(self) -> Iterator[Problem]:
+        if self.free_axis is not None and self.task == "pose":
+            yield Problem(
+                ("free_axis",),
+                "no roll is free where the whole pose is followed (task: pose)",
+                "Write task: position_and_axis, or leave free_axis out.",
+            )
         if self.clearance > 0.0 and not self.collision:
             yield Problem(
                 ("clearance",),

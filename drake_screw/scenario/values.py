@@ -19,6 +19,8 @@ from drake_screw.scenario.yaml_marks import Text
 METRES = Field(json_schema_extra={"unit": "m"})
 RADIANS = Field(json_schema_extra={"unit": "rad"})
 
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
 NAME_PATTERN = "^[A-Za-z0-9_-]+$"
 
 
@@ -129,6 +131,20 @@ def _address(value: Any) -> Any:
     return _absolute(value) if isinstance(value, str) and value and "://" not in value else value
 
 
+def _axis(value: Any) -> Any:
+    if isinstance(value, str):
+        if value not in AXES:
+            raise refusal(
+                f"expected x, y, z or a vector [x, y, z], found '{value}'",
+                "An axis of the end effector's frame, by name or as a vector in that frame.",
+            )
+        return AXES[str(value)]
+    numbers = isinstance(value, tuple) and all(isinstance(v, int | float) for v in value)
+    if numbers and not any(value):
+        raise refusal("a vector of no length has no direction", "Write x, y, z or [x, y, z].")
+    return value
+
+
 def _nothing_is_empty(value: Any) -> Any:
     return {} if value is None else value
 
@@ -174,4 +190,18 @@ Pairs = Annotated[
 Limits = Annotated[dict[str, Positive], BeforeValidator(_nothing_is_empty)]
 Packages = Annotated[dict[str, Folder], BeforeValidator(_nothing_is_empty)]
 """Folders by the names of packages."""
+Axis = Annotated[
+    tuple[float, float, float],
+    BeforeValidator(_axis),
+    WithJsonSchema(
+        {
+            "title": "x, y, z or [x, y, z]",
+            "anyOf": [
+                {"type": "string", "enum": list(AXES)},
+                {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+            ],
+        }
+    ),
+]
+"""A direction: one of a frame's axes, or any vector but 0."""
 Angles = Annotated[dict[str, float], BeforeValidator(_nothing_is_empty)]

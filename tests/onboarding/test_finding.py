@@ -84,13 +84,13 @@ def test_no_rectangle_is_larger(rows: list[list[bool]]) -> None:
 def test_starts_are_level_far_from_limits_and_touch_nothing(workcell: Workcell) -> None:
     chain = workcell.arm.screw_chain()
     within = range_of(chain)
-    found = starts(workcell, chain, within, Rectangle((0.4, 0.8), (-0.5, 0.5)), 0.0, 3)
+    found = starts(workcell, chain, within, Rectangle((0.4, 0.8), (-0.5, 0.5)), 0.0, 3, "pouring")
     assert len(found) == 3
     q = np.array([start.q for start in found])
     assert (np.abs(chain.pose(q)[:, 2, 2]) < 0.2).all()
     assert (within.margin(q) > 0.15).all()
     assert not workcell.collides(q, pose(np.eye(3), [[0.0, 0.0, 1e3]])).any()
-    again = starts(workcell, chain, within, Rectangle((0.4, 0.8), (-0.5, 0.5)), 0.0, 3)
+    again = starts(workcell, chain, within, Rectangle((0.4, 0.8), (-0.5, 0.5)), 0.0, 3, "pouring")
     assert again == found
 
 

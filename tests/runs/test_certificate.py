@@ -23,13 +23,14 @@ def scenario_of(collision=False, objects=(), tool=None, approach="screw", ignore
     return SimpleNamespace(
         coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
         planner=SimpleNamespace(
-            **{"clearance": 0.0, "joint_margin": 0.0, "slide_margin": 0.0} | kept,
+            **{"clearance": 0.0, "joint_margin": 0.0, "slide_margin": 0.0, "roll_axis": None}
+            | kept,
             collision=collision,
             approach=approach,
             turns=24,
         ),
         objects=objects,
-        robot=SimpleNamespace(tool=tool, ignore_collisions=ignored),
+        robot=SimpleNamespace(tool=tool, ignore_collisions=ignored, end_effector="hand"),
     )
 
 
@@ -193,3 +194,10 @@ def test_a_run_that_never_began_states_nothing() -> None:
     stated = certificate(setup, finished)
     assert "claim" not in plain(stated)
     assert stated.statement == ("No initial demonstration.",)
+
+
+def test_a_roll_that_is_free_is_told() -> None:
+    free = scenario_of(roll_axis=(0.0, 1.0, 0.0))
+    _, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=free)
+    assert "turned about the y axis of 'hand' is free" in text
+    assert stated_by("eprocess", [0.0, 0.0, 0.0])[0].free_roll is None

@@ -367,7 +367,7 @@ def test_recordings_of_which_nothing_is_kept_are_passed_over(library: Path, tmp_
     shutil.copytree(library, mine)
     shutil.copytree(library / "left", mine / "astray")
     poses = np.loadtxt(mine / "astray" / "object_poses.csv", delimiter=",")
-    poses[0, 3] = 9.0
+    poses[2, 3] -= 0.7
     np.savetxt(mine / "astray" / "object_poses.csv", poses, delimiter=",")
     found = select(load_scenario("pouring", TWO), mine, planner=Stripes(0.27))
     assert found.chosen == ("left", "right")

@@ -172,7 +172,7 @@ def test_a_scenario_stored_before_joints_moved_away_from_limits_is_of_least_norm
     tmp_path: Path,
 ) -> None:
     file, ours = tmp_path / "scenario.yaml", load_scenario("pouring")
-    file.write_text(dump_scenario(ours).replace("redundancy: least_norm, ", ""))
+    file.write_text(dump_scenario(ours).replace("redundancy: least_norm,", ""))
     assert "redundancy" not in file.read_text()
     assert load_stored_scenario(file) == ours
     assert ours.planner.redundancy == "least_norm"

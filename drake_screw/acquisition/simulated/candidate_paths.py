@@ -13,8 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_screw.planning.roll import along_roll_free, free_frame, turned_along, turned_apart
 from drake_screw.robot import ScrewChain
-from drake_screw.screws import inverse, log, rotation_angle, sclerp, translation_distance
+from drake_screw.screws import (
+    inverse,
+    log,
+    rotation_angle,
+    sclerp,
+    shift,
+    translation_distance,
+)
 from drake_screw.typing import Array
 
 STEP = 0.06  # rad, motion of the end effector in one step
@@ -40,7 +48,11 @@ class CandidatePaths:
 
 
 def follow_key_poses(
-    chain: ScrewChain, q_start: Array, X_WK: Array, stops: tuple[Array, Array]
+    chain: ScrewChain,
+    q_start: Array,
+    X_WK: Array,
+    stops: tuple[Array, Array],
+    free_axis: Array | None = None,
 ) -> CandidatePaths:
     """Lead the arm from one key pose to the next along constant screws.
 
@@ -50,6 +62,8 @@ def follow_key_poses(
         X_WK: (c, g, 4, 4) key poses of the end effector.
         stops: (n,) and (n,) where joints stop while the others move on; infinite of joints whose
             limits are not looked at.
+        free_axis: (3,) in the end effector's frame, about which it rolls as the joints have it;
+            None where it is led as a whole.
 
     Returns:
         The joint paths. They end early if no candidate is left.
@@ -59,12 +73,13 @@ def follow_key_poses(
     X_WE = chain.pose(q)
     points, segments, arrived = [q], [0], np.ones(count, dtype=bool)
     for segment in range(X_WK.shape[1]):
-        X_WA, X_WB = X_WE, X_WK[:, segment]
+        led = segment == 0 or free_axis is None
+        X_WA, X_WB = X_WE if led else X_WK[:, segment - 1], X_WK[:, segment]
         size = rotation_angle(X_WA, X_WB) + translation_distance(X_WA, X_WB) / METERS_PER_RADIAN
         steps = max(4, int(np.ceil(size.max() / STEP)))
         for i in range(1, steps + 1):
             target = sclerp(X_WA, X_WB, np.full(count, i / steps))
-            motion = _motion(chain.jacobian(q), log(target @ inverse(X_WE)), q, stops)
+            motion = _motion(*_asked(chain.jacobian(q), target, X_WE, free_axis), q, stops)
             near_singular = np.linalg.norm(motion, axis=-1) > MAX_JOINT_STEP
             arrived &= ~near_singular
             q = q + np.where(near_singular[:, None], 0.0, motion)
@@ -74,12 +89,22 @@ def follow_key_poses(
             if not arrived.any():
                 return CandidatePaths(np.stack(points, axis=1), np.array(segments), arrived)
         arrived &= translation_distance(X_WE, X_WB) < ARRIVAL_TOLERANCE[0]
-        arrived &= rotation_angle(X_WE, X_WB) < ARRIVAL_TOLERANCE[1]
+        arrived &= turned_apart(X_WE, X_WB, free_axis) < ARRIVAL_TOLERANCE[1]
     return CandidatePaths(np.stack(points, axis=1), np.array(segments), arrived)
 
 
+def _asked(J: Array, target: Array, X_WE: Array, free_axis: Array | None) -> tuple[Array, Array]:
+    """Jacobians (c, d, n) and twists (c, d) in the directions that the hand is led in."""
+    V = log(turned_along(X_WE, target, free_axis) @ inverse(X_WE))
+    if free_axis is None:
+        return J, V
+    p, P = X_WE[:, :3, 3], along_roll_free(X_WE @ free_frame(free_axis))
+    J_WE = np.swapaxes(shift(np.swapaxes(J, -1, -2), p[:, None]), -1, -2)
+    return P @ J_WE, (P @ shift(V, p)[..., None])[..., 0]
+
+
 def _motion(J: Array, V: Array, q: Array, stops: tuple[Array, Array]) -> Array:
-    """Joint motion (c, n) for twists V (c, 6) from q (c, n); who comes to a stop is left behind."""
+    """Joint motion (c, n) for twists V (c, d) from q (c, n); who comes to a stop is left behind."""
     motion, held = damped_joint_motion(J, V), np.zeros(q.shape, dtype=bool)
     room = stops[0] - q, stops[1] - q
     while True:
@@ -100,12 +125,12 @@ def damped_joint_motion(J: Array, V: Array) -> Array:
     Dynamic Systems, Measurement, and Control, 1986).
 
     Args:
-        J: (..., 6, n).
-        V: (..., 6).
+        J: (..., d, n), of d directions.
+        V: (..., d).
 
     Returns:
         (..., n) rad or m.
     """
     Jt = np.swapaxes(J, -1, -2)
-    A = J @ Jt + DAMPING**2 * np.eye(6)
+    A = J @ Jt + DAMPING**2 * np.eye(J.shape[-2])
     return (Jt @ np.linalg.solve(A, V[..., None]))[..., 0]

@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.acquisition.events import Suggestion
 from drake_screw.acquisition.simulated.candidate_paths import CandidatePaths, follow_key_poses
@@ -62,12 +62,20 @@ class SimulatedTeacher:
         workcell: the arm and what it may collide with.
         area: turns requests into object poses.
         motion: "pouring" or "scooping", or a function like those of that name in `motions`.
+        free_axis: (3,) in the end effector's frame, about which it rolls as the joints have it;
+            None where it is led as a whole.
 
     Raises:
         ScenarioError: no such motion.
     """
 
-    def __init__(self, workcell: Workcell, area: WorkArea, motion: str | Motion) -> None:
+    def __init__(
+        self,
+        workcell: Workcell,
+        area: WorkArea,
+        motion: str | Motion,
+        free_axis: ArrayLike | None = None,
+    ) -> None:
         if isinstance(motion, str) and motion not in MOTIONS:
             message, remedy = unknown("motion", motion, "the simulated teacher", MOTIONS)
             raise ScenarioError(message, remedy=remedy)
@@ -76,6 +84,7 @@ class SimulatedTeacher:
         self.motion = motion if isinstance(motion, str) else getattr(motion, "__name__", "motion")
         self._motion = MOTIONS[motion] if isinstance(motion, str) else motion
         self._chain = workcell.arm.screw_chain()
+        self._free_axis = None if free_axis is None else np.asarray(free_axis, dtype=float)
         self._stops = Stops.of(workcell.arm, workcell.start)
 
     def demonstrate(
@@ -131,7 +140,8 @@ class SimulatedTeacher:
         keys = self._motion(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
         aside = azimuth_deviations(rng, CANDIDATES)
         X_WK = hand_poses(keys, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
-        paths = follow_key_poses(self._chain, self.workcell.start, X_WK, self._stops.ends)
+        ends, axis = self._stops.ends, self._free_axis
+        paths = follow_key_poses(self._chain, self.workcell.start, X_WK, ends, axis)
         margin = self._stops.margin(paths.q).min(axis=1)
         within = margin >= MARGIN - ROUNDING
         travel = np.linalg.norm(np.diff(paths.q, axis=1), axis=-1).sum(axis=1)

@@ -5,6 +5,7 @@ V are expressed. The axes of the middle link are taken: there the two neighbouri
 constant, and the others are at most half an arm of rotations away. With fewer than six joints they
 are (J^T J)^-1 J^T V instead, the least squares fit to the motion of the end effector's origin. With
 more than six a motion away from the joint limits may be added that leaves the end effector alone.
+Where the roll about the end effector's z axis is free, there are five directions instead of six.
 """
 
 from __future__ import annotations
@@ -58,10 +59,13 @@ class Kinematics:
     Attributes:
         q: (n,) joint positions.
         base: P_0 = B in M.
-        J: (6, n) Jacobian in M's axes, its columns twists [w; v] about `about`.
-        about: (3,) point in M: M's origin, or with fewer than six joints that of the end effector.
-        factor: of J J^T, or with fewer than six joints of J^T J; damped.
+        J: (6, n) Jacobian in M's axes, its columns twists [w; v] about `about`. Where the roll is
+            free, (5, n): of w what is along `across`.
+        about: (3,) point in M: M's origin, or with fewer than six joints, or where the roll is
+            free, that of the end effector.
+        factor: of J J^T, or with fewer joints than directions of J^T J; damped.
         limits: (2, n) lower and upper joint limits to move away from; None for none.
+        across: (2, 3) where the roll is free, the end effector's x and y axis in M; else None.
     """
 
     q: Array
@@ -70,12 +74,17 @@ class Kinematics:
     about: Array
     factor: Factor
     limits: Array | None = None
+    across: Array | None = None
 
     def to_middle(self, V: Array) -> Array:
-        """A twist (6,) in B about its origin, brought to M's axes and the point `about`."""
+        """A twist (6,) in B about its origin, brought to M's axes and the point `about`.
+
+        Where the roll is free, (5,): as much of it as is followed.
+        """
         R, p = self.base.R, self.base.p
         w = R @ V[:3]
-        return _shifted(np.concatenate([w, R @ V[3:] + np.cross(p, w)]), self.about)
+        moved = _shifted(np.concatenate([w, R @ V[3:] + np.cross(p, w)]), self.about)
+        return _followed(moved, self.across)
 
     def joint_velocities(self, V: Array) -> Array:
         """dq/ds (n,) of a twist in M's axes about `about`: J^+ V, or J^+ (V - J z) + z."""
@@ -87,7 +96,7 @@ class Kinematics:
 
     def minimum_norm(self, V: Array) -> Array:
         """J^+ V (n,) of a twist in M's axes about `about`."""
-        if len(self.q) < 6:
+        if len(self.q) < len(self.J):
             return self.factor.solve(self.J.T @ V)
         return self.J.T @ self.factor.solve(V)
 
@@ -106,24 +115,27 @@ class Kinematics:
 
 
 def kinematics(
-    frames: LinkFrames, q: Array, limits: Array | None = None
+    frames: LinkFrames, q: Array, limits: Array | None = None, *, roll_free: bool = False
 ) -> tuple[Kinematics, Array]:
     """An arm at joint positions q (n,), and its X_BE as three rows (3, 4) of [R | p].
 
     Args:
-        limits: (2, n) joint limits that more joints than six are to move away from.
+        limits: (2, n) joint limits that more joints than directions are to move away from.
+        roll_free: whether the roll about E's z axis is not followed.
     """
-    n, few, X_CE = len(q), len(q) < 6, frames.X_CE
+    directions = 5 if roll_free else 6
+    n, few, X_CE = len(q), len(q) < directions, frames.X_CE
     base, links = link_poses(frames, q)
     R_ME, p_ME = links[-1].R @ X_CE[:3, :3], links[-1].move(X_CE[:3, 3]).p
-    about = p_ME if few else np.zeros(3)
+    about = p_ME if few or roll_free else np.zeros(3)
+    across = R_ME[:, :2].T if roll_free else None
     columns = [_twist(link, turns) for link, turns in zip(links, frames.revolute, strict=True)]
-    J = _shifted(np.stack(columns, axis=1), about)
+    J = _followed(_shifted(np.stack(columns, axis=1), about), across)
     gram = J.T @ J if few else J @ J.T
     damping = DAMPING_REDUNDANT if few and frames.redundant else DAMPING
     factor = Factor.of(gram + damping * np.eye(len(gram)))
     X_BE = base.R.T @ np.column_stack([R_ME, p_ME - base.p])
-    return Kinematics(q, base, J, about, factor, limits if n > 6 else None), X_BE
+    return Kinematics(q, base, J, about, factor, limits if n > directions else None, across), X_BE
 
 
 def link_poses(frames: LinkFrames, q: Array) -> tuple[Pose, list[Pose]]:
@@ -169,8 +181,13 @@ def _shifted(V: Array, p: Array) -> Array:
     return np.concatenate([w, V[3:] + np.cross(w, p, axisa=0, axisc=0)])
 
 
+def _followed(V: Array, across: Array | None) -> Array:
+    """Of twists (6, ...) what is followed, (5, ...), or all of it if `across` is None."""
+    return V if across is None else np.concatenate([across @ V[:3], V[3:]])
+
+
 def orientation(J_before: Array, J_after: Array) -> Value:
-    """det(J_before^T J_after) of Jacobians (6, n), n <= 6.
+    """det(J_before^T J_after) of Jacobians (d, n), n <= d.
 
     It is the inner product of the volumes that the columns span (Cauchy and Binet), which turns
     negative where a path passes through a singularity in between.

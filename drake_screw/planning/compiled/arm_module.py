@@ -22,13 +22,22 @@ import numba
 
 from drake_screw.files import cache_folder
 from drake_screw.planning import contract, outcomes
-from drake_screw.planning.compiled import crossing, inner, lanes, lowering, rows, step_code, trace
+from drake_screw.planning.compiled import (
+    crossing,
+    inner,
+    lanes,
+    lowering,
+    rolling,
+    rows,
+    step_code,
+    trace,
+)
 from drake_screw.planning.compiled.expressions import Program
 from drake_screw.planning.compiled.link_frames import LinkFrames
 from drake_screw.planning.compiled.lowering import lane_code
 from drake_screw.typing import Array
 
-_SOURCES = (contract, crossing, inner, lanes, lowering, outcomes, rows, trace)
+_SOURCES = (contract, crossing, inner, lanes, lowering, outcomes, rolling, rows, trace)
 """Modules that are compiled into that of an arm."""
 
 _TEXT = '''"""Plans of one arm, on blocks of lanes; written by drake_screw.planning.compiled.
@@ -87,7 +96,8 @@ def programs(
     arrive, aim, count = step_code.arrive_and_aim(frames, settings, limits)
     blends = [step_code.blend(n, stage) for stage in range(1, len(step_code.TABLEAU) + 1)]
     judge = step_code.judge(lower, upper, settings)
-    return (*blends, step_code.rate(frames, limits), arrive, judge, aim), count
+    rate = step_code.rate(frames, limits, roll_free=settings.roll_free)
+    return (*blends, rate, arrive, judge, aim), count
 
 
 def load(programs: Sequence[Program]) -> ModuleType:

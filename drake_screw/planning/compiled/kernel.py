@@ -6,6 +6,7 @@ import logging
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -19,6 +20,7 @@ from drake_screw.planning.compiled.rows import LANES, Rows
 from drake_screw.planning.compiled.step_code import Settings
 from drake_screw.planning.compiled.trace import ALL, SUCCESSES, Trace, new_trace
 from drake_screw.planning.outcomes import Cause
+from drake_screw.planning.roll import free_frame
 
 _LOG = logging.getLogger(__name__)
 
@@ -56,6 +58,7 @@ class Kernel:
         home: (4, 4) X_WE at q = 0.
         lower, upper: (n,) joint limits, rad or m.
         settings: of the integrator.
+        free_axis: (3,) in E, about which the end effector's roll is free; None where none is.
     """
 
     def __init__(
@@ -65,13 +68,17 @@ class Kernel:
         lower: Array,
         upper: Array,
         settings: Settings | None = None,
+        free_axis: Array | None = None,
     ) -> None:
         settings = settings or Settings()
+        self._X_EF = None if free_axis is None else free_frame(free_axis)
+        if self._X_EF is not None:
+            settings, home = replace(settings, roll_free=True), home @ self._X_EF
         frames = link_frames(screws, home)
         programs, self._count = arm_module.programs(frames, lower, upper, settings)
         self._module = arm_module.load(programs)
         self._n = len(screws)
-        rows = Rows(self._n)
+        rows = Rows(self._n, settings.directions)
         self._rows = Places(rows.q, rows.q_stage, rows.kept, self._count)
         self._X_BW = np.linalg.inv(frames.X_WB)
         self._bounds = Bounds(
@@ -125,8 +132,7 @@ class Kernel:
         Returns:
             Answers (m, D) for successive instances.
         """
-        N, D = len(X_WO), len(X_OE)
-        nothing = new_trace(self._n)
+        N, D, nothing = len(X_WO), len(X_OE), new_trace(self._n)
         if N == 0 or D == 0:
             return [_unanswered(N, D, nothing)]
         problem = self._problem(X_OE, objects, q_start, begins)
@@ -207,15 +213,17 @@ class Kernel:
         begins: NDArray[np.int64] | None,
     ) -> Problem:
         """The part of a problem that all instances have in common; X_BO and order are empty."""
+        guides = np.concatenate(X_OE).astype(float, order="C")
         return Problem(
             np.empty((0, 0, 4, 4)),
-            np.concatenate(X_OE).astype(float, order="C"),
+            guides if self._X_EF is None else np.ascontiguousarray(guides @ self._X_EF),
             np.concatenate(objects).astype(np.int64, order="C"),
             np.cumsum([0, *map(len, X_OE)], dtype=np.int64),
             np.empty((0, 0), dtype=np.int64),
             np.stack([self._start(q) for q in np.atleast_2d(q_start)]),
             np.zeros(len(X_OE), dtype=np.int64) if begins is None else begins,
             self._bounds,
+            self._X_EF is not None,
         )
 
     def _traced(

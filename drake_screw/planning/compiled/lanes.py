@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from drake_screw.planning.compiled.crossing import first_crossing
 from drake_screw.planning.compiled.inner import inner
+from drake_screw.planning.compiled.rolling import roll_target
 from drake_screw.planning.compiled.rows import (
     ACCEPTED,
     AIM,
@@ -74,6 +75,7 @@ class Problem(NamedTuple):
         starts: (S, ...) start configurations, with what `arrive` says of each.
         begins: (D,) which of them each demonstration begins at.
         bounds: to keep to.
+        roll_free: whether the roll about the end effector's z axis is not followed.
     """
 
     X_BO: Array
@@ -84,6 +86,7 @@ class Problem(NamedTuple):
     starts: Array
     begins: Index
     bounds: Bounds
+    roll_free: bool
 
 
 class Places(NamedTuple):
@@ -234,7 +237,10 @@ def save_start(b, i, rows, start):  # type: ignore[no-untyped-def]
 
 @inner
 def aim_at_guide(b, i, lanes, problem):  # type: ignore[no-untyped-def]
-    """Starts the segment to the guiding pose ahead: X_BG = X_BO X_OE."""
+    """Starts the segment to the guiding pose ahead: X_BG = X_BO X_OE.
+
+    Where the roll is free, G is rolled as far as the end effector is from the guiding pose before.
+    """
     guide = lanes[i, GUIDE]
     m, k = uintp(lanes[i, INSTANCE]), uintp(problem.objects[guide])
     g = uintp(guide)
@@ -245,6 +251,8 @@ def aim_at_guide(b, i, lanes, problem):  # type: ignore[no-untyped-def]
             for a in range(3):
                 value += X_BO[m, k, r, a] * X_OE[g, a, c]
             b[at(TARGET + 4 * r + c, i)] = value
+    if problem.roll_free and guide > problem.first[lanes[i, DEMONSTRATION]]:
+        roll_target(b, i, m, uintp(problem.objects[guide - 1]), uintp(guide - 1), X_BO, X_OE)
     lanes[i, CORRECTION] = 0
     b[at(AIM, i)] = 1.0
 

@@ -39,9 +39,10 @@ _HEAD = 46
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows whose place depends on the number of joints n."""
+    """Rows whose place depends on the number of joints n, and of directions to follow."""
 
     n: int
+    directions: int = 6
 
     @property
     def q(self) -> int:
@@ -70,7 +71,7 @@ class Rows:
     @property
     def kept(self) -> int:
         """From here on: what `arrive` keeps for `aim`."""
-        return self.columns + (6 * self.n if self.n <= 6 else 0)
+        return self.columns + (self.directions * self.n if self.n <= self.directions else 0)
 
 
 @inner

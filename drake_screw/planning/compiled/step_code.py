@@ -38,13 +38,14 @@ from drake_screw.planning.compiled.expressions import (
     varies,
     where,
 )
-from drake_screw.planning.compiled.functions import log_between
+from drake_screw.planning.compiled.functions import cos_sin, log_between
 from drake_screw.planning.compiled.link_frames import LinkFrames
 from drake_screw.planning.contract import (
     CHARACTERISTIC_LENGTH,
     ORIENTATION_MIN,
     RATE_LIMIT,
     RESIDUAL_LIMIT,
+    STILL,
     Redundancy,
 )
 from drake_screw.screws.endless import is_endless
@@ -77,6 +78,7 @@ class Settings:
             rad.
         residual_max: bound on the part of the end-effector motion that the joints cannot give.
         redundancy: what more joints than six do with the motion that the end effector leaves free.
+        roll_free: whether the roll about the end effector's z axis is not followed.
     """
 
     tolerance: float = 1e-4
@@ -87,6 +89,12 @@ class Settings:
     rate_max: float = RATE_LIMIT
     residual_max: float = RESIDUAL_LIMIT
     redundancy: Redundancy = "least_norm"
+    roll_free: bool = False
+
+    @property
+    def directions(self) -> int:
+        """How many directions of the end effector's motion are followed."""
+        return 5 if self.roll_free else 6
 
     def limits(self, lower: Array, upper: Array) -> Array | None:
         """Joint limits (2, n) that joints are to move away from; None where they are not to."""
@@ -106,10 +114,10 @@ def blend(n: int, stage: int) -> Program:
     return b.program(f"blend_{stage}")
 
 
-def rate(frames: LinkFrames, limits: Array | None = None) -> Program:
-    """dq/ds at q_stage; limits as for `kinematics`."""
+def rate(frames: LinkFrames, limits: Array | None = None, *, roll_free: bool = False) -> Program:
+    """dq/ds at q_stage; limits and roll_free as for `kinematics`."""
     b, rows = Block(), r.Rows(len(frames.revolute))
-    arm, _ = kinematics(frames, b[rows.q_stage : rows.rate], limits)
+    arm, _ = kinematics(frames, b[rows.q_stage : rows.rate], limits, roll_free=roll_free)
     V = arm.to_middle(b[r.TWIST : r.TWIST + 6])
     b[rows.rate : rows.slope(0)] = arm.joint_velocities(V)
     return b.program("rate")
@@ -123,18 +131,20 @@ def arrive_and_aim(
     arrive: dq/ds and the pose of the end effector at the end of the step.
     aim: takes good steps, and aims again at the guiding pose.
     """
-    n = len(frames.revolute)
-    b, rows = Block(), r.Rows(n)
-    arm, X_BE = kinematics(frames, b[rows.q_stage : rows.rate], limits)
+    n, d = len(frames.revolute), settings.directions
+    b, rows = Block(), r.Rows(n, d)
+    q = b[rows.q_stage : rows.rate]
+    arm, X_BE = kinematics(frames, q, limits, roll_free=settings.roll_free)
     V = arm.to_middle(b[r.TWIST : r.TWIST + 6])
     b[rows.slope(6) : rows.slope(7)] = arm.joint_velocities(V)
-    if n <= 6:
-        J_start = np.where(varies(arm.J), b[rows.columns : rows.kept].reshape(n, 6).T, arm.J)
+    if n <= d:
+        J_start = np.where(varies(arm.J), b[rows.columns : rows.kept].reshape(n, d).T, arm.J)
         b[r.ORIENTATION] = orientation(J_start, arm.J)
         b[r.VOLUME_END] = arm.factor.determinant
     b[r.POSE : r.POSE + 12] = X_BE.ravel()
     off = X_BE - b[r.TARGET : r.TARGET + 12].reshape(3, 4)
-    b[r.OFF_TURN] = np.sum(off[:, :3] * off[:, :3])
+    turned = off[:, 2] * off[:, 2] * 2.0 if settings.roll_free else off[:, :3] * off[:, :3]
+    b[r.OFF_TURN] = np.sum(turned)
     b[r.OFF_PLACE] = off[:, 3] @ off[:, 3]
     later = Block()
     kept = Kept(rows.kept, b, later)
@@ -175,8 +185,8 @@ class Kept:
 
 
 def _aim(b: Block, arm: Kinematics, settings: Settings) -> Program:
-    n = len(arm.q)
-    rows = r.Rows(n)
+    n, d = len(arm.q), settings.directions
+    rows = r.Rows(n, d)
     taken, begins = b[r.ACCEPTED] > 0.5, b[r.AIM] > 0.5
     begins_segment = begins & (b[r.AIM] < 1.5)
     done = where(taken, b[r.PROGRESS] + b[r.STEP], b[r.PROGRESS])
@@ -190,20 +200,29 @@ def _aim(b: Block, arm: Kinematics, settings: Settings) -> Program:
         return value
 
     X_BE, X_BG = (b[row : row + 12].reshape(3, 4) for row in (r.POSE, r.TARGET))
+    if settings.roll_free:
+        ahead = where(begins, 0.0, left) * b[r.TWIST : r.TWIST + 3]
+        X_BG = _rolled(X_BE, X_BG, ahead, begins_segment)
+        for j, k in np.ndindex(3, 2):
+            update(r.TARGET + 4 * j + k, X_BG[j, k])
     new_twist = (1.0 / left) * log_between(X_BE, X_BG)
     twist = update(slice(r.TWIST, r.TWIST + 6), new_twist)
     w, travel = twist[:3], (twist[3:] + np.cross(twist[:3], X_BE[:, 3])) / CHARACTERISTIC_LENGTH
-    update(r.HAND, w @ w + travel @ travel, begins_segment)
+    if settings.roll_free:
+        w = X_BE[:, :2].T @ w
+        update(r.HAND, w @ w + travel @ travel + STILL**2, begins_segment)
+    else:
+        update(r.HAND, w @ w + travel @ travel, begins_segment)
 
     V = arm.to_middle(new_twist)
     velocities = arm.joint_velocities(V)
     update(r.RESIDUAL, arm.residual(V, velocities) * left * left)
     slope = update(slice(rows.slope(0), rows.slope(1)), velocities)
     update(slice(rows.q, rows.q_stage), b[rows.q_stage : rows.rate])
-    if n <= 6:
+    if n <= d:
         update(r.VOLUME_START, arm.factor.determinant)
         for j, k in np.argwhere(varies(arm.J.T)).tolist():
-            update(rows.columns + 6 * j + k, arm.J[k, j])
+            update(rows.columns + d * j + k, arm.J[k, j])
     limit = settings.motion / (reduce(maximum, abs(slope)) + 1e-9)
     first = settings.first_motion / settings.motion * limit
     step = where(begins, first, minimum(b[r.NEXT_STEP], limit))
@@ -211,10 +230,31 @@ def _aim(b: Block, arm: Kinematics, settings: Settings) -> Program:
     return b.program("aim")
 
 
+def _rolled(X_BE: Array, X_BG: Array, ahead: Array, begins: Condition) -> Array:
+    """The guiding pose (3, 4), rolled about its z axis as far as E is where it is aimed at again.
+
+    Args:
+        X_BE: (3, 4) where the end effector is.
+        X_BG: (3, 4) what it was aimed at until now.
+        ahead: (3,) rad, the turn that was left by then: E would be at R^T R_BG had it not rolled.
+        begins: of a segment, when it is aimed at as it is.
+    """
+    angle = sqrt(ahead @ ahead)
+    u = ahead * (1.0 / (angle + 1e-30))
+    c, s = cos_sin(angle)
+    before = [c * x - s * np.cross(u, x) + (1.0 - c) * (u @ x) * u for x in X_BG[:, :2].T]
+    x, y = X_BE[:, :2].T
+    cosine, sine = before[0] @ x + before[1] @ y, before[1] @ x - before[0] @ y
+    size = 1.0 / sqrt(cosine * cosine + sine * sine + 1e-30)
+    c, s = where(begins, 1.0, cosine * size), where(begins, 0.0, sine * size)
+    x, y = X_BG[:, :2].T
+    return np.column_stack([c * x + s * y, c * y - s * x, X_BG[:, 2:]])
+
+
 def judge(lower: Array, upper: Array, settings: Settings) -> Program:
     """Is the step good, and does the lane need a decision?"""
-    n = len(lower)
-    b, rows = Block(), r.Rows(n)
+    n, d = len(lower), settings.directions
+    b, rows = Block(), r.Rows(n, d)
     step, hand2 = b[r.STEP], b[r.HAND]
     slopes = b[rows.slope(0) : rows.slope(7)].reshape(7, n)
     q0, q3 = b[rows.q : rows.q_stage], b[rows.q_stage : rows.rate]
@@ -229,14 +269,14 @@ def judge(lower: Array, upper: Array, settings: Settings) -> Program:
     change = minimum(5.0, maximum(0.2, 0.9 / (root8 * sqrt(root8))))
     rate2_start, *between, rate2_end = np.sum(slopes * slopes, axis=1)
     ahead = step * rate2_start / maximum(rate2_end - rate2_start, 1e-30)
-    if n <= 6:
+    if n <= d:
         shrunk = sqrt(b[r.VOLUME_END] / maximum(b[r.VOLUME_START], 1e-60))
         ahead = minimum(ahead, step * shrunk / maximum(1.0 - shrunk, 1e-30))
 
     bound = settings.rate_max**2 * hand2
     stray = (reduce(maximum, between) > bound) & (rate2_end <= bound)
     stray |= ~(sum(between, rate2_end) >= 0.0)
-    if n <= 6:
+    if n <= d:
         stray |= b[r.ORIENTATION] < -ORIENTATION_MIN
     good = (error <= 1.0) & ~stray
     longer = minimum(step * change, settings.approach * ahead)
