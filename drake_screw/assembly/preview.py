@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -171,9 +172,8 @@ class Preview:
     def _teacher(self) -> str:
         if self.teacher == "interactive":
             return "you, in the browser"
-        return (
-            str(self.motion) if self.recordings is None else counted(self.recordings, "recording")
-        )
+        n = self.recordings
+        return str(self.motion) if n is None else counted(n, "recording")
 
 
 def preview(scenario: Scenario) -> Preview:
@@ -241,9 +241,7 @@ def preview(scenario: Scenario) -> Preview:
 
 def _tool(setup: Setup) -> PreviewedTool | None:
     tool = setup.robot.tool
-    if tool is None:
-        return None
-    return PreviewedTool(str(tool.shape.solid), tool.frame, tool.touches)
+    return tool and PreviewedTool(str(tool.shape.solid), tool.frame, tool.touches)
 
 
 def _objects(setup: Setup) -> tuple[PreviewedObject, ...]:
@@ -255,11 +253,10 @@ def _objects(setup: Setup) -> tuple[PreviewedObject, ...]:
 
 
 def _farthest_corner(setup: Setup) -> float:
+    places = setup.area.objects
+    sides = [zip(o.lower[:2], o.upper[:2], strict=True) for o in places]
     corners = [
-        (x, y, o.z)
-        for o in setup.area.objects
-        for x in (o.lower[0], o.upper[0])
-        for y in (o.lower[1], o.upper[1])
+        (x, y, o.z) for o, both in zip(places, sides, strict=True) for x, y in product(*both)
     ]
     shoulder = setup.workcell.arm.screw_chain().shoulder
     return float(np.linalg.norm(np.array(corners) - shoulder, axis=1).max())
