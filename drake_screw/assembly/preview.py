@@ -241,7 +241,9 @@ def preview(scenario: Scenario) -> Preview:
 
 def _tool(setup: Setup) -> PreviewedTool | None:
     tool = setup.robot.tool
-    return tool and PreviewedTool(str(tool.shape.solid), tool.frame, tool.touches)
+    if tool is None:
+        return None
+    return PreviewedTool(str(tool.shape.solid), tool.frame, tool.touches)
 
 
 def _objects(setup: Setup) -> tuple[PreviewedObject, ...]:
