@@ -189,9 +189,8 @@ def preview(scenario: Scenario) -> Preview:
     rate, no_demonstration = _plans_per_second(setup)
     other = None
     if recorder.model_file is not None:
-        reach = recorder.arm.screw_chain().reach
         names = recorder.model_file.stem, recorder.arm.joint_names, recorder.arm.end_effector
-        other = PreviewedArm(*names, reach)
+        other = PreviewedArm(*names, recorder.arm.screw_chain().reach)
     return Preview(
         scenario=scenario.name,
         description=scenario.description,
