@@ -88,6 +88,7 @@ def test_regions_fill_while_a_round_goes_on(browser, run) -> None:
         view.close()
 
 
+@pytest.mark.slow
 def test_a_demonstration_is_given_by_clicks_alone(browser) -> None:
     with program(TEACH) as (url, process):
         browser.open(url)

@@ -218,6 +218,7 @@ def drop(run: Path, aside: Path, inbox: Path) -> Path:
     return Path(shutil.move(folder, inbox / folder.name))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("initial", [0, 1])
 def test_a_person_may_have_no_demonstration(browser, tmp_path, initial) -> None:
     run = tmp_path / "run"

@@ -120,6 +120,7 @@ def disturbed(recording: Recording, noise: float) -> np.ndarray:
     return recording.q + np.random.default_rng(1).normal(scale=noise, size=recording.q.shape)
 
 
+@pytest.mark.slow
 def test_coarse_rounding_keeps_the_promise_with_a_guiding_pose_more_at_most(
     recordings: list[Recording], calibrated_arm: Arm
 ) -> None:

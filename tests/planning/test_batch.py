@@ -130,6 +130,7 @@ def test_fields_are_consistent(answers: Outcomes, lessons: tuple[Demonstration, 
     assert (answers.joint < 7).all()
 
 
+@pytest.mark.slow
 def test_agrees_with_the_reference_on_a_small_arm(
     seven: Arm, lessons: tuple[Demonstration, ...], places: np.ndarray, answers: Outcomes
 ) -> None:

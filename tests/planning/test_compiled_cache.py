@@ -45,6 +45,7 @@ for n in map(int, sys.argv[1:]):
 """
 
 
+@pytest.mark.slow
 def test_arms_compiled_apart_share_no_code(tmp_path: Path) -> None:
     """The machine code of arms that never met may be loaded into one process, in any order."""
     for arms in (["1"], ["3"], ["1", "3"], ["3", "1"]):

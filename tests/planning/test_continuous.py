@@ -75,6 +75,7 @@ def test_where_the_start_counts_from_makes_no_difference(seven: Arm, lessons, pl
         np.testing.assert_allclose(plan.q - on, other.q, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_reference_planner_agrees(seven: Arm, lessons, places) -> None:
     arm = with_limits(seven, *limits(seven, np.inf))
     reference = ReferencePlanner(arm, step=0.02)

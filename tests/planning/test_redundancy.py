@@ -152,6 +152,7 @@ def answers(planner: BatchPlanner, lessons, places) -> Outcomes:
     return planner.all_outcomes(lessons, places, REACHING)
 
 
+@pytest.mark.slow
 def test_the_batch_planner_agrees_with_the_reference(seven: Arm, lessons, places, answers) -> None:
     same = [
         assert_agrees_but_within_a_hair(
