@@ -127,7 +127,7 @@ def main() -> None:
     if unknown := [key for key in arguments.robots if key not in ROBOTS]:
         parser.error(f"no robot {', '.join(unknown)}; there are {', '.join(ROBOTS)}")
     print(
-        "| robot | arm | certificate, demonstrations | executed | plans/s "
+        "| robot | arm | certificate, demonstrations | executed | places/s "
         "| seconds: init + check + run + execute |\n|---|---|---|---|---|---|"
     )
     results = {}
