@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Self, TypeVar
 
@@ -24,7 +25,6 @@ from drake_screw.demonstrations import (
     SegmentationConfig,
     look_at,
     read_library,
-    read_recording,
 )
 from drake_screw.demonstrations.demonstration import demonstration_of
 from drake_screw.demonstrations.hand_eye import check_objects
@@ -125,16 +125,10 @@ class Recorder:
             RecordingError: with file and line, whatever is wrong.
             PluginError: no such format.
         """
+        reader = find("recording_formats", format)
         if format == FOLDER:
-            found = self._try(
-                lambda *arm: read_recording(
-                    path, *arm, objects=self._k, velocity_limits=self.velocity_limits
-                )
-            )
-        else:
-            reader = find("recording_formats", format)
-            found = self._try(lambda *arm: reader(path, *arm, objects=self._k))
-        return self._sane(found)
+            reader = partial(reader, velocity_limits=self.velocity_limits)
+        return self._sane(self._try(lambda *arm: reader(path, *arm, objects=self._k)))
 
     def library(self, folder: Path, format: str = FOLDER) -> tuple[Recording, ...]:
         """All recordings in a folder, sorted by name.

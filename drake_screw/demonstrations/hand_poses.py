@@ -10,13 +10,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from drake_screw.demonstrations.recording import GAP, Recording, in_plain_seconds
+from drake_screw.demonstrations.recording import GAP, Recording, cut_off, distinct_stamps
 from drake_screw.errors import RecordingError, counted
 from drake_screw.files import csv_text
-from drake_screw.screws import quaternion_from_rotation, rotation_angle
-from drake_screw.screws.rotations import rotation_from_quaternion
+from drake_screw.screws import (
+    pose,
+    quaternion_from_rotation,
+    rotation_angle,
+    rotation_from_quaternion,
+)
 from drake_screw.tables import read_table
-from drake_screw.tables.clock import spread
 from drake_screw.typing import Array, PathLike
 
 COLUMNS = ("time", "x", "y", "z", "qw", "qx", "qy", "qz")
@@ -72,10 +75,7 @@ def poses(p: Array, q: Array, file: PathLike | None, lines: Sequence[int] | Arra
             file=file,
             line=int(lines[row]),
         )
-    X = np.tile(np.eye(4), (len(p), 1, 1))
-    X[:, :3, :3] = rotation_from_quaternion(q)
-    X[:, :3, 3] = p
-    return X
+    return pose(rotation_from_quaternion(q), p)
 
 
 def checked_hand(
@@ -106,14 +106,9 @@ def checked_hand(
     if (np.diff(t) < 0.0).any():
         row = int(np.argmax(np.diff(t) < 0.0)) + 1
         raise fail(row, "time runs backwards", "Sort the rows by time, or split the file.")
-    t = in_plain_seconds(t, notes, lambda message, remedy: fail(0, message, remedy))
-    t, note = spread(t, np.append(True, (X[1:] != X[:-1]).any(axis=(1, 2))))
-    notes.extend([note] if note else [])
-    keep = np.append(True, np.diff(t) > 0.0)
-    if not keep.all():
-        dropped = counted(int(np.count_nonzero(~keep)), "sample")
-        notes.append(f"dropped {dropped} with a repeated time stamp")
-        t, X, where = t[keep], X[keep], where[keep]
+    moves = np.append(True, (X[1:] != X[:-1]).any(axis=(1, 2)))
+    t, keep = distinct_stamps(t, moves, notes, lambda message, remedy: fail(0, message, remedy))
+    X, where = X[keep], where[keep]
     steps = np.linalg.norm(np.diff(X[:, :3, 3], axis=0), axis=1)
     usual = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
     fast = steps > FASTEST * np.maximum(np.diff(t), usual) + JUMP
@@ -142,11 +137,7 @@ def checked_hand(
     first = max(int(np.argmax(moved[0])) - 1, 0)
     last = len(t) - int(np.argmax(moved[1][::-1]))
     last = min(max(last, first + 1), len(t) - 1)
-    if t[first] - t[0] > 0.05 or t[-1] - t[last] > 0.05:
-        notes.append(
-            f"cut off {t[first] - t[0]:.2f} s of standing still at the start, "
-            f"{t[-1] - t[last]:.2f} s at the end"
-        )
+    notes.extend(cut_off(t, first, last))
     t, X = t[first : last + 1], X[first : last + 1]
     q = np.zeros((len(t), 0))
     return replace(recording, t=t - t[0], X_WE=X, q=q, notes=tuple(notes))

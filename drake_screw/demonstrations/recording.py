@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drake_screw.demonstrations.outliers import plausible
 from drake_screw.demonstrations.turns import turns_in_words, whole_turns
@@ -128,14 +129,9 @@ def checked(
             f"time runs backwards, from {t[row - 1]:.6f} s to {t[row]:.6f} s",
             "Sort the rows by time, or split a file into which two recordings were written.",
         )
-    t = in_plain_seconds(t, notes, lambda message, remedy: fail(0, message, remedy))
-    t, note = spread(t, np.append(True, (np.diff(q, axis=0) != 0.0).any(axis=1)))
-    notes.extend([note] if note else [])
-    keep = np.append(True, np.diff(t) > 0.0)
-    if not keep.all():
-        dropped = counted(int(np.count_nonzero(~keep)), "sample")
-        notes.append(f"dropped {dropped} with a repeated time stamp")
-        t, q, where = t[keep], q[keep], where[keep]
+    moves = np.append(True, (np.diff(q, axis=0) != 0.0).any(axis=1))
+    t, keep = distinct_stamps(t, moves, notes, lambda message, remedy: fail(0, message, remedy))
+    q, where = q[keep], where[keep]
     if len(t) < 2:
         raise fail(
             0,
@@ -175,14 +171,37 @@ def checked(
             file=file,
         )
     ends = q[0].copy(), q[-1].copy()
-    if t[first] - t[0] > 0.05 or t[-1] - t[last] > 0.05:
-        notes.append(
-            f"cut off {t[first] - t[0]:.2f} s of standing still at the start, "
-            f"{t[-1] - t[last]:.2f} s at the end"
-        )
+    notes.extend(cut_off(t, first, last))
     t, q = t[first : last + 1], q[first : last + 1].copy()
     q[0], q[-1] = ends
     return replace(recording, t=t - t[0], q=q, notes=tuple(notes))
+
+
+def distinct_stamps(
+    t: Array, moves: NDArray[np.bool_], notes: list[str], fail: Callable[[str, str], RecordingError]
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Stamps in s, no two alike, and which (m,) of the samples they are of.
+
+    Args:
+        t: (m,) as recorded, none before the one in front of it.
+        moves: (m,) whether a sample differs from the one in front of it.
+        notes: gets what was done.
+        fail: makes the error of a message and a remedy.
+    """
+    t, note = spread(in_plain_seconds(t, notes, fail), moves)
+    notes.extend([note] if note else [])
+    keep = np.append(True, np.diff(t) > 0.0)
+    if not keep.all():
+        dropped = counted(int(np.count_nonzero(~keep)), "sample")
+        notes.append(f"dropped {dropped} with a repeated time stamp")
+    return t[keep], keep
+
+
+def cut_off(t: Array, first: int, last: int) -> Iterator[str]:
+    """A note on what is cut off before and after some samples of stamps (m,), if it is much."""
+    before, after = t[first] - t[0], t[-1] - t[last]
+    if before > 0.05 or after > 0.05:
+        yield f"cut off {before:.2f} s of standing still at the start, {after:.2f} s at the end"
 
 
 def in_plain_seconds(

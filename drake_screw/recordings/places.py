@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drake_screw.errors import RecordingError
-from drake_screw.screws import normalized, pose_from_planar
-from drake_screw.screws.rotations import rotation_from_quaternion
+from drake_screw.screws import normalized, pose, pose_from_planar, rotation_from_quaternion
 from drake_screw.typing import Array
 
 FORMS = (
@@ -70,10 +69,7 @@ class Given:
             raise self._error(f"{len(p)} and {len(q)} numbers, where 3 and 4 are needed")
         if abs(np.linalg.norm(q) - 1.0) > 0.01:
             raise self._error(f"a quaternion of length {np.linalg.norm(q):.3g}, where 1 is needed")
-        X = np.eye(4)
-        X[:3, :3] = rotation_from_quaternion(np.roll(q, 1) if found.group(2) == "xyzw" else q)
-        X[:3, 3] = p
-        return X
+        return pose(rotation_from_quaternion(np.roll(q, 1) if found.group(2) == "xyzw" else q), p)
 
     def _matrix(self, X: Array) -> Array:
         R = X[:3, :3]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
-from drake_screw.demonstrations.library import is_recording
+from drake_screw.demonstrations.library import OBJECTS, is_recording
 from drake_screw.errors import RecordingError
 from drake_screw.plugins import choices, find, is_known
 from drake_screw.recordings.mapping import FILE, Mapping, read_mapping
@@ -66,11 +67,10 @@ def read_recordings(
             understand(raw, said, robot, format=format, objects_needed=objects_needed)
             for raw in raws
         )
-    names = [each.name for each in found]
-    for name in names:
-        if names.count(name) > 1:
+    for name, count in Counter(each.name for each in found).items():
+        if count > 1:
             raise RecordingError(
-                f"{names.count(name)} recordings are called '{name}'",
+                f"{count} recordings are called '{name}'",
                 remedy="Rename the files: a recording is called like its file.",
                 file=source,
             )
@@ -110,7 +110,7 @@ def _files(source: Path, *, whole: bool = False) -> list[Path]:
         item
         for item in source.iterdir()
         if item.suffix.lower() in SUFFIXES and item.name[0] not in "._" and item.is_file()
-        and item.name != "object_poses.csv"
+        and item.name != OBJECTS
     )  # fmt: skip
     if not files:
         raise RecordingError(

@@ -16,7 +16,7 @@ import numpy as np
 from drake_screw.errors import RecordingError
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.recordings.raw import Raw
-from drake_screw.screws.rotations import rotation_from_quaternion
+from drake_screw.screws import pose, rotation_from_quaternion
 from drake_screw.tables.table import from_arrays
 from drake_screw.tables.text import Progress
 
@@ -98,10 +98,7 @@ def _episode(group: Any, name: str, source: Path, rate: float | None) -> Raw:
 
 def _first(p: Any, q: Any) -> Any:
     """The object's pose at the start (4, 4)."""
-    X = np.eye(4)
-    X[:3, :3] = rotation_from_quaternion(np.roll(np.asarray(q[0], dtype=float), 1))
-    X[:3, 3] = p[0]
-    return X
+    return pose(rotation_from_quaternion(np.roll(np.asarray(q[0], dtype=float), 1)), p[0])
 
 
 def _rate(data: Any) -> float | None:

@@ -12,7 +12,7 @@ import numpy as np
 from drake_screw.errors import RecordingError, suggestion
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.recordings.raw import Raw
-from drake_screw.screws.rotations import rotation_from_quaternion
+from drake_screw.screws import pose, rotation_from_quaternion
 from drake_screw.tables import Table
 from drake_screw.tables.table import from_arrays
 from drake_screw.tables.text import Progress
@@ -123,9 +123,7 @@ def _poses(message: Any, topic: str, kind: str) -> Iterable[tuple[str, str, Any]
     """Names of topics and child frames, what they are seen from, and X (4, 4)."""
     for part in message.transforms if kind == TREE else [message]:
         p, q = _parts(part)
-        X = np.eye(4)
-        X[:3, :3] = rotation_from_quaternion([q.w, q.x, q.y, q.z])
-        X[:3, 3] = p.x, p.y, p.z
+        X = pose(rotation_from_quaternion([q.w, q.x, q.y, q.z]), [p.x, p.y, p.z])
         name = topic if kind == POSES[0] else part.child_frame_id.lstrip("/")
         yield name, part.header.frame_id, X
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import codecs
 import csv
-import io
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -85,8 +84,7 @@ def _head(stream: BinaryIO) -> list[str]:
     """The first lines, whole ones only."""
     raw = stream.read(HEAD)
     whole = raw if len(raw) < HEAD else raw[: raw.rfind(b"\n") + 1] or raw
-    text = whole.decode("utf-8-sig")
-    return io.StringIO(text, newline="").read().replace("\r\n", "\n").splitlines(keepends=True)
+    return whole.decode("utf-8-sig").replace("\r\n", "\n").splitlines(keepends=True)
 
 
 def _numbers(stream: BinaryIO, dialect: Dialect, size: int, say: Progress) -> Array | None:
