@@ -73,7 +73,7 @@ def _begin(cell, room, X_WO, q, i, found):  # type: ignore[no-untyped-def]
     if found.pair[i] >= 0:
         found.step[i], found.place[i] = 0, 0.0
         return True
-    set_out(room)
+    set_out(cell, room, q)
     return False
 
 

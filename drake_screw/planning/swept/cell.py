@@ -42,8 +42,9 @@ class Cell(NamedTuple):
         slot: (P,) the place of a pair's motion in `Room.travel`: that of its second shape, seen
             from behind the joint that moves the first one.
         groups: (C + 1,) where the pairs of each group begin.
-        group_slot: (C,) as `slot` has it.
-        around: (C, 2, 3) m, lower and upper corner of a box in W around a group's shapes; infinite
+        spans: (D + 1,) where the groups of each slot begin; span_slot, span_shape: (D,) which slot
+            that is, and the second shape of its pairs.
+        around: (6 C,) m, lower and upper x, y, z of boxes in W around each group's shapes; infinite
             where they are not fixed in W.
         standing: (R, 2) shapes that could touch of which the arm moves neither.
         clearance: m, that they have to be apart.
@@ -64,7 +65,9 @@ class Cell(NamedTuple):
     pairs: Index
     slot: Index
     groups: Index
-    group_slot: Index
+    spans: Index
+    span_slot: Index
+    span_shape: Index
     around: Array
     standing: Index
     clearance: float
@@ -84,7 +87,10 @@ class Room(NamedTuple):
         travel: (n M,) m, how far each is from there at most, seen from before each joint.
         way: (M,) m, of the joints so far.
         gone: (n M,) m, the sum of all travel.
-        until: (P,) m, up to which of it a pair need not be looked at; first: (C,) least of a group.
+        until: (P,) m, up to which of it a pair need not be looked at; first: (C,) least of a group;
+            wake: (D,) least of a slot.
+        start: (n,) where the last path started; until_at_start, first_at_start: what is known there
+            wherever objects are.
         X_WG: (S, 3, 4) poses of shapes.
         stamp: (S,) when they were last written; clock: (1,) now.
         v: (P + R, 3), hints: (P + R, 2) of each pair, where its bounds were found last.
@@ -109,6 +115,10 @@ class Room(NamedTuple):
     gone: Array
     until: Array
     first: Array
+    wake: Array
+    start: Array
+    until_at_start: Array
+    first_at_start: Array
     X_WG: Array
     stamp: Index
     clock: Index
@@ -145,6 +155,10 @@ def room_for(cell: Cell) -> Room:
         gone=np.zeros(n * M),
         until=np.zeros(P),
         first=np.zeros(len(cell.groups) - 1),
+        wake=np.zeros(len(cell.span_slot)),
+        start=np.full(n, np.nan),
+        until_at_start=np.zeros(P),
+        first_at_start=np.zeros(len(cell.groups) - 1),
         X_WG=np.array(cell.X_WG),
         stamp=np.zeros(len(cell.joint), dtype=np.int64),
         clock=np.zeros(1, dtype=np.int64),

@@ -104,8 +104,10 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
         pairs=nothing.reshape(0, 2),
         slot=nothing,
         groups=nothing,
-        group_slot=nothing,
-        around=np.zeros((0, 2, 3)),
+        spans=nothing,
+        span_slot=nothing,
+        span_shape=nothing,
+        around=np.zeros(0),
         standing=nothing.reshape(0, 2),
         clearance=float(clearance),
     )
@@ -147,6 +149,7 @@ def with_pairs(
     slot = behind * len(cell.moved_joint) + ends[:, 1] - moved
     of = np.column_stack([ends[:, 1], behind, cluster[ends[:, 0]]])
     groups = np.flatnonzero((np.diff(of, axis=0, prepend=-2) != 0).any(axis=1))
+    spans = np.flatnonzero(np.diff(slot[groups], prepend=-1))
     around = np.empty((len(groups), 2, 3))
     for i, (begin, end) in enumerate(itertools.pairwise([*groups.tolist(), len(ends)])):
         own = ends[begin:end, 0]
@@ -157,8 +160,10 @@ def with_pairs(
         pairs=ends,
         slot=slot,
         groups=np.append(groups, len(ends)).astype(np.int64),
-        group_slot=slot[groups],
-        around=around,
+        spans=np.append(spans, len(groups)).astype(np.int64),
+        span_slot=slot[groups[spans]],
+        span_shape=ends[groups[spans], 1],
+        around=np.ascontiguousarray(around.reshape(-1, 6).T).ravel(),
         standing=np.array(standing, dtype=np.int64).reshape(-1, 2),
     )
 

@@ -108,37 +108,42 @@ def look(cell, room, depth):  # type: ignore[no-untyped-def]
 @inlined
 def list_near(cell, room):  # type: ignore[no-untyped-def]
     """Lists all pairs but those that were so far apart that they cannot have met since."""
-    gone, travel = room.gone, room.travel
+    gone, travel, first, until = room.gone, room.travel, room.first, room.until
     for slot in range(uintp(len(gone))):
         gone[slot] += 2.0 * travel[slot]
     kept = 0
-    moved = standing_shapes(cell)
-    for group in range(uintp(len(room.first))):
-        slot = uintp(cell.group_slot[group])
+    moved, around, C = uintp(standing_shapes(cell)), cell.around, uintp(len(first))
+    for span in range(uintp(len(room.wake))):
+        slot = uintp(cell.span_slot[span])
         so_far = gone[slot]
-        if so_far < room.first[group]:
+        if so_far < room.wake[span]:
             continue
-        begin, end = uintp(cell.groups[group]), uintp(cell.groups[group + uintp(1)])
-        b = cell.pairs[begin, 1]
-        m, square = uintp(b - moved), 0.0
-        for i in range(3):
-            x = room.centers[i, m]
-            out = max(cell.around[group, 0, i] - x, x - cell.around[group, 1, i])
-            out = max(out, 0.0)
-            square += out * out
-        apart = cell.clearance + travel[slot] + BAND + cell.reach[uintp(b)]
-        if square > apart * apart:
-            room.first[group] = so_far + math.sqrt(square) - apart
-            continue
-        least = 1e300
-        for pair in range(begin, end):
-            if so_far >= room.until[pair]:
-                room.listed[0, kept] = np.int64(pair)
-                kept += 1
-                least = so_far
-            else:
-                least = min(least, room.until[pair])
-        room.first[group] = least
+        m = uintp(cell.span_shape[span]) - moved
+        x, y, z = room.centers[0, m], room.centers[1, m], room.centers[2, m]
+        apart = cell.clearance + travel[slot] + BAND + cell.moved_reach[m]
+        soonest = 1e300
+        for group in range(uintp(cell.spans[span]), uintp(cell.spans[span + uintp(1)])):
+            least = first[group]
+            if so_far >= least:
+                a = max(around[group] - x, x - around[group + 3 * C], 0.0)
+                b = max(around[group + C] - y, y - around[group + 4 * C], 0.0)
+                c = max(around[group + 2 * C] - z, z - around[group + 5 * C], 0.0)
+                square = a * a + b * b + c * c
+                if square > apart * apart:
+                    least = so_far + math.sqrt(square) - apart
+                else:
+                    least = 1e300
+                    begin, end = cell.groups[group], cell.groups[group + uintp(1)]
+                    for pair in range(uintp(begin), uintp(end)):
+                        if so_far >= until[pair]:
+                            room.listed[0, kept] = np.int64(pair)
+                            kept += 1
+                            least = so_far
+                        else:
+                            least = min(least, until[pair])
+                first[group] = least
+            soonest = min(soonest, least)
+        room.wake[span] = soonest
     room.lengths[0] = kept
 
 
@@ -241,11 +246,46 @@ def stand(cell, room, X_WO, q):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def set_out(room):  # type: ignore[no-untyped-def]
-    """Nothing is known of any pair at the start of a path."""
+def set_out(cell, room, q):  # type: ignore[no-untyped-def]
+    """What is known of each pair at the start q (n,) of a path: as much as of the last path that
+    started there, but of objects, which are elsewhere."""
+    same = True
+    for k in range(len(q)):
+        same &= room.start[k] == q[k]
+    if not same:
+        for k in range(len(q)):
+            room.start[k] = room.q[k] = q[k]
+            room.dq[k] = 0.0
+        _at_start(cell, room)
+    for slot in range(len(room.gone)):
+        room.gone[slot] = 0.0
+    for span in range(len(room.wake)):
+        room.wake[span] = -1.0
+    for group in range(len(room.first)):
+        room.first[group] = room.first_at_start[group]
+    for pair in range(len(room.until)):
+        room.until[pair] = room.until_at_start[pair]
+
+
+@inner
+def _at_start(cell, room):  # type: ignore[no-untyped-def]
+    """Finds how far pairs are apart at `room.q`, but for those of objects."""
+    place_arm(cell, room)
+    place_balls(cell, room)
+    for slot in range(len(room.gone)):
+        room.gone[slot] = 0.0
+    for span in range(len(room.wake)):
+        room.wake[span] = -1.0
     for group in range(len(room.first)):
         room.first[group] = -1.0
     for pair in range(len(room.until)):
         room.until[pair] = -1.0
-    for slot in range(len(room.gone)):
-        room.gone[slot] = 0.0
+    list_near(cell, room)
+    look(cell, room, 0)
+    for group in range(len(room.first)):
+        least = room.first[group]
+        for pair in range(cell.groups[group], cell.groups[group + 1]):
+            if cell.object[cell.pairs[pair, 0]] >= 0:
+                least = room.until[pair] = -1.0
+            room.until_at_start[pair] = room.until[pair]
+        room.first_at_start[group] = least

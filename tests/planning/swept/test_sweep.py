@@ -209,6 +209,29 @@ def test_first_touches_are_those_of_a_dense_search(wood) -> None:
     assert (np.array(late) < 3e-2).mean() > 0.9
 
 
+def test_paths_from_the_same_start_are_judged_each_by_itself(wood) -> None:
+    """Also where the object stands elsewhere each time, and where another start comes between."""
+    rng = np.random.default_rng(9)
+    starts = rng.uniform(-1.5, 1.5, (3, 3))
+    starts[1] = starts[0] + [0.0, 0.0, 1e-9]
+    paths, X_WO = [], []
+    for i in range(240):
+        q = np.vstack([np.zeros(3), np.cumsum(rng.normal(size=(3, 3)) * 0.2, axis=0)])
+        paths.append(np.clip(starts[i // 2 % 3] + q, -2.5, 2.5))
+        # Half of the poles stand where one of the arm's links is at the start, or next to it.
+        turn = starts[i // 2 % 3, 0]
+        near = 0.3 * np.array([np.cos(turn), np.sin(turn)]) + rng.normal(size=2) * 0.05
+        X_WO.append(standing(*(near if i % 2 else rng.uniform(-1.0, 1.0, 2))))
+    steps = [lines(q) for q in paths]
+    first = np.cumsum([0, *map(len, steps)])
+    found = wood.along(np.concatenate(steps), first, np.array(X_WO))
+    for i, (q, X) in enumerate(zip(paths, X_WO, strict=True)):
+        alone = along(wood, q, X)
+        assert alone.touches[0] == found.touches[i]
+        assert (alone.step[0], alone.place[0]) == (found.step[i], found.place[i])
+    assert 0.2 < found.touches[::2].mean() < found.touches[1::2].mean()
+
+
 def test_a_path_is_judged_the_same_however_it_is_divided(wood) -> None:
     rng = np.random.default_rng(6)
     for q in some_paths(rng, 80):
