@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 WORKERS ?= auto
+SHARED_OUT := -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 MODULE ?=
 SAMPLE ?=
 
@@ -46,15 +47,15 @@ types: install-test  ## mypy
 layers: install-test  ## import-linter: data flows one way
 	$(BIN)/lint-imports
 
-unit: install-test  ## pytest
-	$(BIN)/pytest -n $(WORKERS)
+unit: install-test  ## pytest; a file's tests share what they set up, so one process runs them
+	$(BIN)/pytest $(SHARED_OUT)
 
 coverage: install-test  ## pytest, and which lines it ran; a good deal slower
 	$(BIN)/coverage erase
-	$(BIN)/pytest -n $(WORKERS) --cov=drake_screw --cov-report=term
+	$(BIN)/pytest $(SHARED_OUT) --cov=drake_screw --cov-report=term
 
 slow: install-test  ## the long trials that `make test` leaves out
-	$(BIN)/pytest -n $(WORKERS) -m slow
+	$(BIN)/pytest -n $(WORKERS) --dist worksteal -m slow
 
 notebooks: install-test  ## run the tutorials
 	$(BIN)/pytest --nbmake --nbmake-timeout=300 -n $(WORKERS) tutorials

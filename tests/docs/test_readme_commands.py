@@ -1,13 +1,18 @@
-"""The README's commands do what it says, one after the other in one folder."""
+"""The README's commands can be read; slow: they do what it says, one after the other."""
 
 from __future__ import annotations
 
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import typer
+
+from drake_screw.cli import app
+from drake_screw.commands.listing import shipped
 
 ROOT = Path(__file__).parents[2]
 COMMAND = Path(sys.executable).with_name("drake-screw")
@@ -30,6 +35,7 @@ def commands() -> list[str]:
     return [line.split("  #")[0].strip() for line in lines if not line.startswith("make")]
 
 
+@pytest.mark.slow
 def test_commands_in_their_order(tmp_path: Path) -> None:
     if not COMMAND.exists():
         pytest.skip(f"the command is not installed beside {sys.executable}")
@@ -50,6 +56,20 @@ def test_commands_in_their_order(tmp_path: Path) -> None:
     assert missing == []
     for entry in re.findall(r"^      (\S+)", (ROOT / "README.md").read_text(), re.MULTILINE):
         assert (tmp_path / "my_run" / entry).exists(), entry
+
+
+def test_every_command_can_be_read() -> None:
+    """Its verb, arguments and options; and shipped scenarios and robots by their names."""
+    group = typer.main.get_command(app)
+    assert isinstance(group, typer.core.TyperGroup)
+    names = {entry.name for entry in shipped().scenarios}
+    names |= {entry.name for entry in shipped().models}
+    for line in commands():
+        program, verb, *words = shlex.split(line)
+        assert program == "drake-screw"
+        given = group.commands[verb].make_context(verb, words).params
+        for name in (given.get("scenario"), given.get("robot")):
+            assert name is None or Path(name).suffix or name in names, line
 
 
 def test_shell_blocks_are_all_read() -> None:

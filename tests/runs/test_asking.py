@@ -71,12 +71,9 @@ def asked(events: list[Event]) -> list[Suggestion]:
     return [event.suggestion for event in events if isinstance(event, DemonstrationRequested)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    "regions",
-    [
-        pytest.param(GRID, id="grid"),
-        pytest.param(ADAPTIVE, id="adaptive", marks=pytest.mark.slow),
-    ],
+    "regions", [pytest.param(GRID, id="grid"), pytest.param(ADAPTIVE, id="adaptive")]
 )
 def test_a_run_with_another_rule_is_carried_on_and_told_again(regions, tmp_path: Path) -> None:
     scenario = load_scenario("pouring", [*regions, *ELSEWHERE])

@@ -35,7 +35,8 @@ def lifted(
     return load_scenario(folder / "six.yaml", changes)
 
 
-@pytest.mark.parametrize("at", [0.1, pytest.param(0.003, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("at", [0.1, 0.003])
 def test_it_is_taught_certified_and_executed(tmp_path: Path, at: float) -> None:
     least_norm = preview(lifted(tmp_path, at))
     assert least_norm.plans_per_second is not None

@@ -36,7 +36,14 @@ def run(tmp_path: Path) -> Run:
     return make
 
 
-@pytest.mark.parametrize("limit", ['velocity="0" effort="100"', 'effort="100"', ""])
+@pytest.mark.parametrize(
+    "limit",
+    [
+        'velocity="0" effort="100"',
+        pytest.param('effort="100"', marks=pytest.mark.slow),
+        pytest.param("", marks=pytest.mark.slow),
+    ],
+)
 def test_without_velocity_limits_all_goes_on_and_says_so(run: Run, limit: str) -> None:
     lacking = dict.fromkeys(("j1", "j4"), limit)
     folder = run(limits=lacking, transmissions=NAMES)
