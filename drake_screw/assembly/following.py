@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from drake_screw.assembly.workcell_parts import robot_config
 from drake_screw.robot import Arm
 from drake_screw.robot.directions import has, missing_turn
 from drake_screw.scenario.schema import Scenario
@@ -47,7 +48,7 @@ def cannot_follow(scenario: Scenario, arm: Arm) -> Iterator[str]:
         yield (
             f"{how_many}: the hand cannot be turned and moved in all six directions, and a "
             "screw in general cannot be followed: plans fail as out of reach where "
-            f"the bodies' places ask for another{_lacks(arm, scenario.robot.start)}"
+            f"the bodies' places ask for another{_lacks(arm, robot_config(scenario).start)}"
         )
         usable = [name for name, vector in AXES.items() if has(chain, vector)]
         if usable:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from drake_screw.acquisition import RecordedTeacher
 from drake_screw.assembly.setup import Setup
-from drake_screw.demonstrations import Recording
+from drake_screw.assembly.why_not import why_not
+from drake_screw.demonstrations import NoMotionKept, Recording
 
 
 def named_recordings(setup: Setup) -> tuple[Recording, ...]:
@@ -27,6 +28,23 @@ def kept(setup: Setup, recordings: Sequence[Recording]) -> tuple[str, ...]:
     """A line for each recording: how faithfully it is kept, or why it is not used.
 
     For example ``demo_07: 7 guiding poses of the bowl; kept to 6 mm and 0.08 rad; turn 1.36 of 1.38
-    rad``.
+    rad``. Where the arm cannot do from its start what was shown, objects standing as they did, the
+    line ends with the first segment that it cannot follow.
     """
-    return tuple(str(setup.look(recording)) for recording in recordings)
+    return tuple(f"{setup.look(r)}{_cannot_follow(setup, r)}" for r in recordings)
+
+
+def _cannot_follow(setup: Setup, recording: Recording) -> str:
+    """What the arm cannot follow of a recording where it was shown, as the end of a sentence."""
+    try:
+        demonstration = setup.learn(recording)
+    except NoMotionKept:
+        return ""
+    X_WO = setup.recorder_of(recording.robot).seen(recording)
+    start = setup.workcell.start
+    outcomes = setup.planner.all_outcomes([demonstration], X_WO[None], start)
+    if outcomes.success[0, 0]:
+        return ""
+    why = why_not(outcomes[0], [demonstration], X_WO, start, setup.planner)
+    why = why.removeprefix(f"with {demonstration.name}, ")
+    return f"; not planned where it was shown, of {len(demonstration.objects)} segments: {why}"

@@ -39,7 +39,7 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     parser = Parser(plant)
     xacro = block.xacro if place.endswith(SUFFIX) else {}
     block = block.model_copy(update={"xacro": xacro})
-    config = RobotConfig(block.model, block.joints, block.end_effector, block.start, block.base)
+    config = RobotConfig(block.model, block.joints, block.end_effector, (), block.base)
     robot_models = add_robot(parser, replace(config, packages=block.packages, xacro=xacro)).models
     names = _names(plant.get_joint(i) for i in plant.GetJointIndices())
     other = scenario.recorded_on

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from drake_screw.robot import (
     BoxShape,
     CylinderShape,
@@ -14,6 +16,7 @@ from drake_screw.robot import (
     TableConfig,
     ToolConfig,
 )
+from drake_screw.robot.ignored import start_state
 from drake_screw.robot.parts import turned_frame
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.shape_blocks import ShapeBlock
@@ -21,13 +24,18 @@ from drake_screw.tasks import ObjectArea, WorkArea
 
 
 def robot_config(scenario: Scenario) -> RobotConfig:
-    """Which arm of which model, and what it holds."""
+    """Which arm of which model, and what it holds.
+
+    Raises:
+        ModelError: it starts in a state of an SRDF file that does not have it.
+    """
     block = scenario.robot
-    return RobotConfig(
+    named = isinstance(block.start, str)
+    robot = RobotConfig(
         str(block.model),
         block.joints,
         block.end_effector,
-        block.start,
+        () if isinstance(block.start, str) else block.start,
         block.base,
         block.parked,
         tool_config(scenario),
@@ -38,6 +46,7 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         xacro=block.xacro,
         srdf=block.srdf,
     )
+    return replace(robot, start=start_state(robot, str(block.start))) if named else robot
 
 
 def tool_config(scenario: Scenario) -> ToolConfig | None:

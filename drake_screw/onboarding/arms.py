@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from itertools import takewhile
 
 import numpy as np
-from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import BodyIndex, Joint, JointIndex
+from pydrake.multibody.tree import JointIndex
 
 from drake_screw.errors import ModelError, ScenarioError, suggestion
+from drake_screw.onboarding.joint_tree import JointTree
 from drake_screw.onboarding.reading import Robot
-from drake_screw.robot.names import called, scoped, shown_name
+from drake_screw.robot.names import shown_name
 
 FULL, MOST = 6, 7
 """Joints of an arm: from so many on the hand can be led anywhere; more than MOST are unusual."""
@@ -48,6 +48,8 @@ class FoundArm:
         base: the root link.
         last_link: that the last joint moves.
         fingers: joints behind the last one.
+        only_by_name: whether it is taken only where it is asked for, as a group of joints is that
+            an SRDF names.
     """
 
     name: str
@@ -56,6 +58,7 @@ class FoundArm:
     base: str
     last_link: str
     fingers: tuple[str, ...]
+    only_by_name: bool = False
 
     @property
     def remark(self) -> str | None:
@@ -72,8 +75,7 @@ def find_arms(robot: Robot) -> tuple[FoundArm, ...]:
     Raises:
         ModelError: there is none.
     """
-    plant = robot.plant
-    tree = _Tree(plant)
+    tree = JointTree(robot.plant)
     chains: dict[tuple[JointIndex, ...], None] = {}
     for path in tree.paths():
         chain = _without_fingers(tree, path, robot.mimics)
@@ -95,7 +97,8 @@ def find_arms(robot: Robot) -> tuple[FoundArm, ...]:
 def choose_arm(arms: Sequence[FoundArm], wanted: str | None) -> tuple[FoundArm, str | None]:
     """The arm to take, and why it is that one, where there was a choice.
 
-    It is the one that is wanted, the only one, or the left one of a pair.
+    It is the one that is wanted, the only one, or the left one of a pair; one that is taken only
+    by its name if there is no other.
 
     Raises:
         ScenarioError: there is no such arm, or several and none is wanted.
@@ -108,8 +111,10 @@ def choose_arm(arms: Sequence[FoundArm], wanted: str | None) -> tuple[FoundArm, 
         raise ScenarioError(
             f"no arm '{wanted}' in this model", remedy=suggestion(wanted, names, "Arms")
         )
+    arms = [arm for arm in arms if not arm.only_by_name] or arms
     if len(arms) == 1:
         return arms[0], None
+    names = [arm.name for arm in arms]
     pairs = [arm for arm in arms if _mirrored(arm) & {other.joints for other in arms}]
     if len(pairs) == 1 and len(arms) == 2:
         return pairs[0], f"the left one of {' and '.join(names)}"
@@ -119,74 +124,8 @@ def choose_arm(arms: Sequence[FoundArm], wanted: str | None) -> tuple[FoundArm, 
     )
 
 
-class _Tree:
-    """Joints that move, by the bodies that they move."""
-
-    def __init__(self, plant: MultibodyPlant) -> None:
-        self.plant = plant
-        self.inboard: dict[BodyIndex, Joint] = {}
-        for index in plant.GetJointIndices():
-            joint = plant.get_joint(index)
-            self.inboard[joint.child_body().index()] = joint
-        self.moving = [
-            index
-            for index in plant.GetJointIndices()
-            if plant.get_joint(index).type_name() in ("revolute", "prismatic")
-        ]
-        self.way = {index: self._way(index) for index in self.moving}
-        self.next: dict[JointIndex, list[JointIndex]] = {index: [] for index in self.moving}
-        for index, way in self.way.items():
-            if len(way) > 1:
-                self.next[way[-2]].append(index)
-
-    def joint(self, index: JointIndex) -> Joint:
-        return self.plant.get_joint(index)
-
-    def name(self, index: JointIndex) -> str:
-        """Plain where that tells it from all others, else with its model's before it."""
-        joint = self.plant.get_joint(index)
-        alike = [
-            i for i in self.plant.GetJointIndices() if called(self.plant.get_joint(i), joint.name())
-        ]
-        return str(joint.name()) if len(alike) == 1 else scoped(joint)
-
-    def _way(self, index: JointIndex) -> tuple[JointIndex, ...]:
-        """Moving joints from the root to this one."""
-        way, moving = [index], set(self.moving)
-        body = self.plant.get_joint(index).parent_body().index()
-        while body in self.inboard:
-            joint = self.inboard[body]
-            if joint.index() in moving:
-                way.append(joint.index())
-            body = joint.parent_body().index()
-        return tuple(reversed(way))
-
-    def root(self, index: JointIndex) -> str:
-        """The link at the world, or the first that is fixed to it, on the way to a joint."""
-        body = self.plant.get_joint(index).parent_body()
-        world = self.plant.world_body().index()
-        while body.index() in self.inboard:
-            parent = self.inboard[body.index()].parent_body()
-            if parent.index() == world:
-                break
-            body = parent
-        return shown_name(body)
-
-    def paths(self) -> list[tuple[JointIndex, ...]]:
-        """From the root to each end."""
-        return [self.way[index] for index in self.moving if not self.next[index]]
-
-    def depth(self, index: JointIndex) -> int:
-        """Joints of the longest chain from this one on."""
-        return 1 + max((self.depth(j) for j in self.next[index]), default=0)
-
-    def behind(self, index: JointIndex) -> list[JointIndex]:
-        """Joints behind this one, nearest first."""
-        return [j for child in self.next[index] for j in (child, *self.behind(child))]
-
-
 def _without_fingers(
-    tree: _Tree, path: tuple[JointIndex, ...], mimics: frozenset[str]
+    tree: JointTree, path: tuple[JointIndex, ...], mimics: frozenset[str]
 ) -> tuple[JointIndex, ...]:
     """The part of a path before the first joint of a finger."""
     for i, index in enumerate(path):
@@ -202,23 +141,28 @@ def _without_fingers(
     return path
 
 
-def _arm(tree: _Tree, chain: tuple[JointIndex, ...]) -> FoundArm:
+def _arm(tree: JointTree, chain: tuple[JointIndex, ...]) -> FoundArm:
     first = 0
     while len(chain) - first > FULL and _belongs_to_the_body(tree, chain[first]):
         first += 1
-    joints = tuple(map(tree.name, chain[first:]))
-    last = tree.joint(chain[-1])
+    return arm_of(tree, chain[first:])
+
+
+def arm_of(tree: JointTree, chain: tuple[JointIndex, ...], name: str | None = None) -> FoundArm:
+    """The arm of some joints, each behind the one before; by its joints' names if not called so."""
+    joints, link = tuple(map(tree.name, chain)), shown_name(tree.joint(chain[-1]).child_body())
     return FoundArm(
-        name=_name(joints) or shown_name(last.child_body()),
+        name=name or _name(joints) or link,
         joints=joints,
-        held=tuple(map(tree.name, chain[:first])),
-        base=tree.root(chain[0]),
-        last_link=shown_name(last.child_body()),
+        held=tuple(tree.name(j) for j in tree.way[chain[-1]] if j not in chain),
+        base=tree.root(tree.way[chain[-1]][0]),
+        last_link=link,
         fingers=tuple(map(tree.name, tree.behind(chain[-1]))),
+        only_by_name=name is not None,
     )
 
 
-def _belongs_to_the_body(tree: _Tree, index: JointIndex) -> bool:
+def _belongs_to_the_body(tree: JointTree, index: JointIndex) -> bool:
     """Whether a joint moves more than one arm: a lift, a waist, a rail, a base that drives."""
     branches = len(tree.next[index]) > 1
     slides = tree.joint(index).type_name() == "prismatic"

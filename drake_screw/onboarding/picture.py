@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle as Patch
 
 from drake_screw.files import write_bytes
-from drake_screw.onboarding.design import SPACING, Design
+from drake_screw.onboarding.at_height import SPACING
+from drake_screw.onboarding.design import Design
 from drake_screw.planning import Cause
 from drake_screw.visualization.palette import INK, OUTCOME_COLORS, PAPER
 

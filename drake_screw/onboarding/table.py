@@ -72,8 +72,8 @@ def _corners(inspector: SceneGraphInspector, shape: GeometryId) -> Array:
     return np.asarray((box.pose() @ (signs * box.half_width()).T).T)
 
 
-def best_height(chain: ScrewChain, within: Range, task: str) -> float:
-    """m, of those below the shoulder the height at which most of a table can be reached."""
+def best_heights(chain: ScrewChain, within: Range, task: str) -> list[float]:
+    """m, heights below the shoulder, first that at which most of a table can be reached."""
     shoulder, R = chain.shoulder, chain.reach
     x = shoulder[0] + np.linspace(0.35, 0.9, 7) * R
     y = shoulder[1] + np.linspace(-0.6, 0.6, 9) * R
@@ -82,7 +82,7 @@ def best_height(chain: ScrewChain, within: Range, task: str) -> float:
         z = float(np.round((shoulder[2] - under) / ROUNDED) * ROUNDED)
         found = reach_map(chain, within, x, y, z, HOLDS[task], aside=(0.0,))
         scores[z] = float(found.share.mean()) - 0.2 * abs(under - USUAL)
-    return max(scores, key=lambda z: scores[z])
+    return sorted(scores, key=lambda z: -scores[z])
 
 
 def table_under(area: Rectangle, top: float, *, around_the_base: bool) -> TableConfig:

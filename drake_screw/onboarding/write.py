@@ -7,7 +7,8 @@ import os
 import re
 from pathlib import Path
 
-from drake_screw.onboarding.design import BOWL, Design
+from drake_screw.onboarding.at_height import BOWL
+from drake_screw.onboarding.design import Design
 from drake_screw.onboarding.table import LOW_SHOULDER, USUAL
 
 WIDTH = 96

@@ -13,7 +13,7 @@ from drake_screw.errors import ModelError
 from drake_screw.robot.names import called, find_body, scoped
 from drake_screw.robot.packages import ModelPlace, Packages
 from drake_screw.robot.parts import RobotConfig
-from drake_screw.robot.srdf import read_srdf, srdf_file
+from drake_screw.robot.srdf import Srdf, read_srdf, srdf_file, state_positions
 from drake_screw.robot.tool import leave_out
 
 KEY = "robot.ignore_collisions"
@@ -67,12 +67,12 @@ def let_links_touch(
                 remedy="Name a link of the robot, and what it may touch.",
             )
         leave_out(plant, scene_graph, a, b)
-    srdf = srdf_of(robot)
+    srdf = srdf_with(robot)
     if srdf is None:
         return ()
     by_name = {name: link for link in links for name in (scoped(link), link.name())}
     lacking: dict[str, None] = {}
-    for names in (pair[:2] for pair in read_srdf(srdf, _packages(robot)).pairs):
+    for names in (pair[:2] for pair in srdf.pairs):
         missing = [name for name in names if name not in by_name]
         lacking |= dict.fromkeys(missing)
         if not missing:
@@ -87,6 +87,28 @@ def srdf_of(robot: RobotConfig) -> Path | None:
         ModelError: it cannot be found.
     """
     return None if robot.srdf is None else srdf_file(robot.srdf, _packages(robot))
+
+
+def srdf_with(robot: RobotConfig) -> Srdf | None:
+    """A robot's SRDF, if it has one.
+
+    Raises:
+        ModelError: it cannot be found or read.
+    """
+    file = srdf_of(robot)
+    return None if file is None else read_srdf(file, _packages(robot))
+
+
+def start_state(robot: RobotConfig, name: str) -> tuple[float, ...]:
+    """Angles of the arm's joints in a state of the robot's SRDF.
+
+    Raises:
+        ModelError: there is no SRDF, or it lacks the state or a joint of it.
+    """
+    srdf = srdf_with(robot)
+    if srdf is None:
+        raise ModelError(f"there is no SRDF file with a state '{name}'", file=robot.model)
+    return state_positions(srdf, name, robot.joints)
 
 
 def remedy_for(pairs: Sequence[Pair]) -> str:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from drake_screw.errors import ModelError
+from drake_screw.errors import ModelError, suggestion
 from drake_screw.robot.model_xml import parse_model
 from drake_screw.robot.packages import Packages, split_address
 from drake_screw.robot.xacro_text import SUFFIX, expand
@@ -105,6 +105,46 @@ def read_srdf(file: Path, packages: Packages | None = None) -> Srdf:
             file=file,
         )
     return Srdf(file, tuple(_pairs(root)), tuple(_groups(root)), tuple(_states(root, file)))
+
+
+def state_positions(srdf: Srdf, name: str, joints: Sequence[str]) -> tuple[float, ...]:
+    """Positions of joints, in rad or m, in a state.
+
+    Args:
+        srdf: has the state; several groups may have one of a name, and count together.
+        name: of the state, or `GROUP/NAME`.
+        joints: names.
+
+    Raises:
+        ModelError: there is no such state, it lacks a joint, or has two positions for one.
+    """
+    group, _, own = name.rpartition("/")
+    named = [s for s in srdf.states if s.name == name]
+    named = named or [s for s in srdf.states if s.name == own and group == s.group]
+    if not named:
+        raise ModelError(
+            f"no state '{name}' in this SRDF",
+            remedy=suggestion(name, dict.fromkeys(s.name for s in srdf.states), "States"),
+            file=srdf.file,
+        )
+    found: dict[str, float] = {}
+    for joint in joints:
+        values = {s.positions[joint]: s.group for s in named if joint in s.positions}
+        if not values:
+            raise ModelError(
+                f"state '{name}' has no position for joint '{joint}'",
+                remedy=f"It has one for: {', '.join(k for s in named for k in s.positions)}. "
+                "Give robot.start as numbers, or another state.",
+                file=srdf.file,
+            )
+        if len(values) > 1:
+            raise ModelError(
+                f"state '{name}' has {len(values)} positions for joint '{joint}'",
+                remedy=f"Say which: {' or '.join(f'{g}/{name}' for g in values.values())}.",
+                file=srdf.file,
+            )
+        found[joint] = next(iter(values))
+    return tuple(found[joint] for joint in joints)
 
 
 def _pairs(root: ET.Element) -> Iterator[IgnoredPair]:

@@ -32,12 +32,23 @@ def problems_of(error: ValidationError, data: Any) -> list[Problem]:
             *block, name = detail["loc"]
             meant.add((*block, nearest(str(name), _valid(tuple(block)))))
     for detail in details:
+        if _also_text(detail, details, data):
+            continue
         problem = _problem(detail, data)
         if not (detail["type"] == "missing" and problem.keys in meant):
             problems.setdefault(problem.keys, problem)
     return [
         p for keys, p in problems.items() if not any(keys[:n] in problems for n in range(len(keys)))
     ]
+
+
+def _also_text(detail: ErrorDetails, details: list[ErrorDetails], data: Any) -> bool:
+    """Whether an error says only that a list, in which something is wrong, is no text either."""
+    keys, value = _follow(detail["loc"], data)
+    if detail["type"] != "string_type" or not isinstance(value, tuple):
+        return False
+    places = (_follow(other["loc"], data)[0] for other in details)
+    return any(len(place) > len(keys) and place[: len(keys)] == keys for place in places)
 
 
 def _problem(detail: ErrorDetails, data: Any) -> Problem:

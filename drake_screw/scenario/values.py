@@ -23,6 +23,8 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 NAME_PATTERN = "^[A-Za-z0-9_-]+$"
 
+NamedState = Annotated[str, Field(min_length=1, title="a state's name")]
+
 
 @dataclass(frozen=True)
 class Interval:

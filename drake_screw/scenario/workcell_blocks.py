@@ -20,6 +20,7 @@ from drake_screw.scenario.values import (
     Limits,
     ModelName,
     Name,
+    NamedState,
     Options,
     Packages,
     Pairs,
@@ -39,8 +40,9 @@ class RobotBlock(Block):
     end_effector_rotation: Annotated[tuple[float, float, float], RADIANS] | None = None
     """roll, pitch and yaw by which that frame is turned, about its own origin, before it is used,
     for a model that has none whose z axis points out of the hand; not turned if left out"""
-    start: Annotated[tuple[float, ...], RADIANS]
-    """joint angles from which every plan starts, in the order of `joints`"""
+    start: Annotated[tuple[float, ...] | NamedState, RADIANS]
+    """joint angles from which every plan starts, in the order of `joints`; or the name of a state
+    in the SRDF file, `ready`, or `GROUP/ready` where several groups have one of that name"""
     base: str = "base"
     """name of the link or frame at the world's origin, z up, whatever holds the robot; what is
     between it and the model's root is held. `world` leaves the model where it puts itself"""
@@ -63,8 +65,8 @@ class RobotBlock(Block):
     xacro: Options = Field(default={})
     """arguments of a model that is written in xacro"""
     srdf: Address | None = None
-    """path of the SRDF file that says which links may touch one another, relative to the scenario
-    file, or its address in a package"""
+    """path of the SRDF file that says which links may touch one another, and what states there are,
+    relative to the scenario file, or its address in a package"""
 
     def broken_rules(self) -> Iterator[Problem]:
         yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
@@ -82,7 +84,14 @@ class RobotBlock(Block):
                     f"'{name}' is no joint of the arm",
                     suggestion(name, self.joints, "Joints"),
                 )
-        if len(self.start) != len(self.joints):
+        if isinstance(self.start, str):
+            if self.srdf is None:
+                yield Problem(
+                    ("start",),
+                    f"'{self.start}' would be a state of an SRDF file, and none is given",
+                    "Give the file in robot.srdf, or an angle for each joint, [0.1, ...].",
+                )
+        elif len(self.start) != len(self.joints):
             yield Problem(
                 ("start",),
                 f"expected {len(self.joints)} angles, one for each joint, found {len(self.start)}",

@@ -10,7 +10,7 @@ import pytest
 
 from drake_screw.assembly.preview import preview
 from drake_screw.assembly.setup import Setup
-from drake_screw.errors import ModelError
+from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.robot import RobotConfig, Workcell, build_workcell
 from drake_screw.robot.srdf import Group, GroupState, IgnoredPair, read_srdf
 from drake_screw.runs.begun_with import model_files, model_hashes
@@ -113,3 +113,63 @@ def test_what_cannot_be_used_is_refused(
     with pytest.raises(ModelError, match=message) as caught:
         build_workcell(replace(robot, srdf=str(file)))
     assert caught.value.file == file
+
+
+STATES = SRDF.replace(
+    "</robot>",
+    """<group_state name="home" group="wrist"><joint name="p3" value="0.25"/></group_state>
+<group_state name="up" group="arm"><joint name="p1" value="1"/><joint name="p2" value="1"/>
+  <joint name="p3" value="1"/></group_state>
+<group_state name="up" group="wrist"><joint name="p3" value="0.25"/></group_state>
+</robot>""",
+)
+
+
+def started(folder: Path, start: str, states: str = STATES) -> Setup:
+    (folder / "arm.srdf").write_text(states)
+    return Setup(load_scenario(folder / "small.yaml", [f"robot.start={start}"]))
+
+
+@pytest.mark.usefixtures("robot")
+def test_a_state_is_the_start(tmp_path: Path) -> None:
+    """Of one group, or of several together; it is kept by its name."""
+    setup = started(tmp_path, "home")
+    np.testing.assert_array_equal(setup.workcell.start, [0.5, -1.0, 0.25])
+    copy = tmp_path / "sub.yaml"
+    copy.write_text(dump_scenario(setup.scenario))
+    assert load_scenario(copy).robot.start == "home"
+    setup = started(tmp_path, "arm/up")
+    np.testing.assert_array_equal(setup.workcell.start, [1.0, 1.0, 1.0])
+
+
+@pytest.mark.usefixtures("robot")
+@pytest.mark.parametrize(
+    ("start", "states", "message", "remedy"),
+    [
+        ("hom", STATES, "no state 'hom'", "Did you mean 'home'"),
+        ("home", SRDF, "state 'home' has no position for joint 'p3'", "It has one for: p1, p2"),
+        ("up", STATES, "state 'up' has 2 positions for joint 'p3'", "arm/up or wrist/up"),
+    ],
+)
+def test_a_state_that_will_not_do_is_refused(
+    start: str, states: str, message: str, remedy: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ModelError, match=message) as caught:
+        _ = started(tmp_path, start, states).workcell
+    assert caught.value.file == tmp_path / "arm.srdf"
+    assert remedy in str(caught.value.remedy)
+
+
+@pytest.mark.usefixtures("robot")
+def test_a_state_without_an_srdf_is_refused(tmp_path: Path) -> None:
+    text = SCENARIO.replace("[0.3, 0.3, 0.3],\n  srdf: arm.srdf", "home")
+    (tmp_path / "small.yaml").write_text(text)
+    with pytest.raises(ScenarioError, match="'home' would be a state of an SRDF file"):
+        load_scenario(tmp_path / "small.yaml")
+
+
+@pytest.mark.usefixtures("robot")
+@pytest.mark.parametrize("start", ["[0.3, x, 0.3]", "[0.3, [1], 0.3]"])
+def test_a_number_that_is_none_is_told_by_its_place(start: str, tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match=r"robot\.start\.1: expected a number"):
+        started(tmp_path, start)

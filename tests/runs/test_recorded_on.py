@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from itertools import islice
 from pathlib import Path
 
@@ -109,6 +110,25 @@ def test_guiding_poses_are_those_of_the_arm_that_was_led(
         learned = setup.learn(recording)
         np.testing.assert_array_equal(learned.X_OE, expected.X_OE)
         np.testing.assert_allclose(learned.transfer(expected.X_WO), expected.path[expected.kept])
+
+
+def test_check_tells_what_an_arm_cannot_follow_of_what_it_was_shown(changes: list[str]) -> None:
+    """The segment, and why; nothing of recordings that it can follow where they were made."""
+    lost = "not planned where it was shown"
+    seven = preview(load_scenario("pouring_iiwa", changes)).kept
+    assert [lost in line for line in seven] == [False, False, True], seven
+    five = [
+        f"robot.joints=[{', '.join(IIWA[i] for i in (0, 1, 3, 5, 6))}]",
+        "robot.start=[0.7, 0.6, -1.9, -0.93, 0.0]",
+        "robot.parked={iiwa_joint_3: 0.3, iiwa_joint_5: 0.3}",
+    ]
+    said = preview(load_scenario("pouring_iiwa", [*changes, *five])).kept
+    assert len(said) == len(PLACES)
+    for line in said:
+        assert re.search(
+            rf"; {lost}, of \d+ segments: .*\bsegment \d+( is out of reach)?$",
+            line,
+        ), line
 
 
 def test_places_are_seen_from_the_shoulder_at_the_height_of_the_object(
