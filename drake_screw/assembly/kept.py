@@ -45,6 +45,6 @@ def _cannot_follow(setup: Setup, recording: Recording) -> str:
     outcomes = setup.planner.all_outcomes([demonstration], X_WO[None], start)
     if outcomes.success[0, 0]:
         return ""
-    why = why_not(outcomes[0], [demonstration], X_WO, start, setup.planner)
+    why = why_not(outcomes[0], [demonstration], X_WO, start, setup.careful_planner)
     why = why.removeprefix(f"with {demonstration.name}, ")
     return f"; not planned where it was shown, of {len(demonstration.objects)} segments: {why}"

@@ -34,9 +34,14 @@ def model_files(file: Path, packages: PackageMap) -> tuple[tuple[str | None, Pat
             if one.add_model is not None
         )
     except (RuntimeError, ValueError, SystemExit) as error:
-        raise ModelError(
-            f"Drake cannot read these model directives: {error}",
-            remedy="Each add_model names a file as package://NAME/PATH, a package being a folder "
-            "that has a package.xml.",
-            file=file,
-        ) from error
+        raise directives_error(file, error) from error
+
+
+def directives_error(file: Path, error: BaseException) -> ModelError:
+    """What to say of directives that Drake cannot read."""
+    return ModelError(
+        f"Drake cannot read these model directives: {error}",
+        remedy="Each add_model names a file as package://NAME/PATH, a package being a folder "
+        "that has a package.xml.",
+        file=file,
+    )

@@ -5,14 +5,17 @@ from __future__ import annotations
 import hashlib
 import logging
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from pydrake.multibody.parsing import PackageMap
+
 from drake_screw.errors import ModelError
 from drake_screw.files import cache_folder, file_hash, write_text
+from drake_screw.robot.addresses import add_packages
+from drake_screw.robot.included import is_directives, mend_directives, mend_includes
 from drake_screw.robot.model_limits import check_joint_limits
 from drake_screw.robot.model_materials import mend_materials
 from drake_screw.robot.model_meshes import LeftOut, MeshesRead, make_absolute, read_meshes
@@ -83,6 +86,8 @@ def model_file(
             remedy=f"Leave `xacro` out, or name the {SUFFIX} file.",
             file=file,
         )
+    if is_directives(file):
+        return _directives(place, shapes=shapes)
     if not is_xacro and file.suffix.lower() not in KINDS.values():
         return ModelFile(file, file, file_hash(file))
     try:
@@ -102,11 +107,14 @@ def model_file(
         )
     original = model_xml(root)
     meshes = read_meshes(root, file.parent, place.packages) if shapes else MeshesRead()
-    changed = _mend(root, place, shapes=shapes) if root.tag == "robot" else False
-    if not is_xacro and not meshes.changed and not changed:
-        return ModelFile(file, file, file_hash(file))
     for shape in meshes.left_out:
         _log.debug("%s: %s shape left out: %s", file, shape.role, shape)
+    changed = _mend(root, place, shapes=shapes) if root.tag == "robot" else False
+    put, included = mend_includes(root, file.parent, place.packages, _mender(place, shapes=shapes))
+    changed = changed or put
+    left_out = (*meshes.left_out, *(s for _, part in included for s in part.left_out))
+    if not is_xacro and not meshes.changed and not changed:
+        return ModelFile(file, file, _together(file_hash(file), included), left_out)
     make_absolute(root, file.parent, place.packages)
     suffix = KINDS.get(root.tag, file.suffix.lower())
     hash = file_hash(file) if not is_xacro else hashlib.sha256(original.encode()).hexdigest()
@@ -114,23 +122,34 @@ def model_file(
     if missing or meshes.converted:
         told = [hash, *("\0".join(entry) for entry in (*missing, *meshes.converted))]
         hash = hashlib.sha256("\n".join(told).encode()).hexdigest()
-    return ModelFile(file, _kept(model_xml(root), f"{_stem(file)}{suffix}"), hash, meshes.left_out)
+    read = _kept(model_xml(root), f"{_stem(file)}{suffix}")
+    return ModelFile(file, read, _together(hash, included), left_out)
 
 
-def check_text_of(file: Path) -> None:
-    """Refuse shapes and limits of a model's file that directives add; see `check_collision_shapes`.
+Parts = Sequence[tuple[Path, ModelFile]]
+"""Files that a model is put together of, and what became of them."""
 
-    A file that is neither URDF nor SDF, or that cannot be parsed, is left to Drake.
 
-    Raises:
-        ModelError: there is one.
-    """
-    if file.suffix.lower() not in KINDS.values():
-        return
-    with suppress(ET.ParseError, OSError):
-        root = parse_model(file.read_bytes())
-        check_collision_shapes(root, file)
-        check_joint_limits(root, file)
+def _directives(place: ModelPlace, *, shapes: bool) -> ModelFile:
+    """As `model_file`, of Drake's model directives."""
+    file, packages = place.file, PackageMap()
+    add_packages(packages, file, place.packages, meshes=shapes)
+    text, parts = mend_directives(file, packages, _mender(place, shapes=shapes))
+    left_out = tuple(s for _, part in parts for s in part.left_out)
+    read = file if text is None else _kept(text, file.name)
+    return ModelFile(file, read, _together(file_hash(file), parts), left_out)
+
+
+def _mender(place: ModelPlace, *, shapes: bool) -> Callable[[Path], ModelFile]:
+    """Makes models ready that one is put together of."""
+    return lambda file: model_file(ModelPlace(str(file), place.given), shapes=shapes)
+
+
+def _together(hash: str, parts: Parts) -> str:
+    """The hash of a model and of all that it is put together of."""
+    if not parts:
+        return hash
+    return hashlib.sha256("\n".join([hash, *(part.hash for _, part in parts)]).encode()).hexdigest()
 
 
 def _mend(root: ET.Element, place: ModelPlace, *, shapes: bool) -> bool:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from drake_screw.errors import ModelError
+from drake_screw.robot.addresses import DRAKE_S_OWN
 from drake_screw.robot.mesh_files import content_hash, hull_file, look_file
 from drake_screw.robot.packages import Packages, split_address
 from drake_screw.robot.shapes import MESH_SUFFIXES
@@ -91,7 +93,12 @@ def make_absolute(root: ET.Element, folder: Path, packages: Packages) -> None:
     """Write out where the files are that a model names, so that its text may be put anywhere."""
     for element in (*root.iter("mesh"), *root.iter("texture"), *root.iter("include")):
         address = address_of(element)
-        if address and "://" not in address:
+        split = split_address(address)
+        if not address or (split is None and "://" in address):
+            continue
+        if split is not None and (not split[0] or split[0] in DRAKE_S_OWN):
+            continue
+        with suppress(ModelError):
             set_address(element, str(packages.path(address, folder)))
 
 

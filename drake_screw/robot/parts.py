@@ -21,7 +21,7 @@ from drake_screw.robot.arm import Arm
 from drake_screw.robot.base import fix_base, set_defaults, without_furniture
 from drake_screw.robot.directives import model_files
 from drake_screw.robot.mimic import Mimic, follow, mimics_in
-from drake_screw.robot.model_file import ModelFile, check_text_of, model_file
+from drake_screw.robot.model_file import ModelFile, model_file
 from drake_screw.robot.names import check_apart, find_frame
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
 from drake_screw.robot.packages import ModelPlace
@@ -143,9 +143,6 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
     file = model.file
     add_packages(parser.package_map(), model.read, place.packages, meshes=shapes)
     files = model_files(model.read, parser.package_map())
-    for _, one in files:
-        if one != model.read:
-            check_text_of(one)
     models = _read(parser, model)
     _LOG.debug("read %s", file)
     mimics = tuple(mimic for name, one in files for mimic in mimics_in(one, name))

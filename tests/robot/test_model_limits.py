@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from drake_screw.errors import ModelError
-from drake_screw.robot.model_file import check_text_of, model_file
+from drake_screw.robot.model_file import model_file
 from drake_screw.robot.packages import ModelPlace
 from tests.robot.six_joints import urdf
 from tests.robot.small_arms import SLIDING, sdf
@@ -28,9 +28,14 @@ BACKWARDS = "joint 'j2': its velocity limit -2 is below 0"
 def test_of_a_urdf(tmp_path: Path, text: str, said: str) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(text)
-    for read in (lambda: model_file(ModelPlace(str(file))), lambda: check_text_of(file)):
+    adding, including = tmp_path / "robot.dmd.yaml", tmp_path / "robot.sdf"
+    adding.write_text(f"directives: [add_model: {{name: arm, file: 'file://{file}'}}]")
+    including.write_text(
+        f"<sdf version='1.9'><model name='all'><include><uri>{file}</uri></include></model></sdf>"
+    )
+    for model in (file, adding, including):
         with pytest.raises(ModelError, match=re.escape(said)) as error:
-            read()
+            model_file(ModelPlace(str(model)))
         assert str(file) in str(error.value)
 
 
