@@ -116,6 +116,7 @@ def record(run: Path) -> dict[str, Any]:
     return json.loads((run / "run.json").read_text())
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_with_what_is_given_by_clicks_alone(browser, tmp_path) -> None:
     run = tmp_path / "run"
     with command(

@@ -158,6 +158,7 @@ def test_the_screws_carry_position_and_axis_and_the_roll_is_free(
     assert max(drifted) > 0.1
 
 
+@pytest.mark.slow
 def test_small_steps_of_another_kind_agree(case: Case, answers: Outcomes) -> None:
     """Euler's method on the recorded screw's own set points, without any aim again."""
     same, seen = 0, 0
