@@ -6,12 +6,15 @@ from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydrake.geometry import FrameId, Meshcat, Role, SceneGraph
+from pydrake.geometry import FrameId, Meshcat, ReadObjToTriangleSurfaceMesh, Role, SceneGraph, Shape
+from pydrake.geometry import Mesh as MeshShape
 from pydrake.multibody.tree import BodyIndex
+from scipy.spatial import ConvexHull
 
 from drake_screw.robot import Arm, Workcell
 from drake_screw.typing import Array
-from drake_screw.visualization.drawing import rgba
+from drake_screw.visualization.drawing import draw, rgba
+from drake_screw.visualization.meshes import Mesh
 
 HALO = 1.03
 """A copy is larger than its link by this factor, so that the two never flicker."""
@@ -119,6 +122,34 @@ class Linkage:
         larger = np.diag([HALO, HALO, HALO, 1.0])
         for geometry in looks or inspector.GetGeometries(frame, Role.kProximity):
             place = f"{path}/{inspector.GetName(geometry).replace('::', '/')}"
-            meshcat.SetObject(place, inspector.GetShape(geometry), rgba(color, opacity))
+            shape = inspector.GetShape(geometry)
+            bare = _without_looks(shape)
+            if bare is None:
+                meshcat.SetObject(place, shape, rgba(color, opacity))
+            else:
+                draw(meshcat, place, bare, color, opacity)
             X_BG = inspector.GetPoseInFrame(geometry).GetAsMatrix4()
             meshcat.SetTransform(place, X_BG @ larger)
+
+
+def _without_looks(shape: Shape) -> Mesh | None:
+    """A mesh that brings colours of its own, which no colour would change, without them.
+
+    Of glTF only the convex hull is left; None of other shapes.
+    """
+    if not isinstance(shape, MeshShape):
+        return None
+    path = shape.source().path() if shape.source().is_path() else None
+    if path is not None and path.suffix.lower() == ".obj":
+        if b"mtllib" not in path.read_bytes():
+            return None
+        surface = ReadObjToTriangleSurfaceMesh(path, shape.scale3())
+        corners = np.array([surface.vertex(i) for i in range(surface.num_vertices())])
+        faces = [
+            [surface.element(f).vertex(k) for k in range(3)] for f in range(surface.num_triangles())
+        ]
+    else:
+        hull = shape.GetConvexHull()
+        corners = np.array([hull.vertex(i) for i in range(hull.num_vertices())])
+        faces = ConvexHull(corners).simplices
+    return Mesh(corners, np.asarray(faces, dtype=np.int32))
