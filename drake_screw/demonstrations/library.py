@@ -96,9 +96,9 @@ def read_library(
     folder = Path(folder)
     if not folder.is_dir():
         raise RecordingError(
-            "no such folder",
+            "no such file or folder" if not folder.exists() else "no folder of recordings",
             file=folder,
-            remedy="Give a folder of recordings.",
+            remedy="Give a folder of recordings, or a file that `drake-screw import` reads.",
         )
     if is_recording(folder):
         raise RecordingError(

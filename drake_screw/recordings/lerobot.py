@@ -43,8 +43,8 @@ def read_lerobot(
     if mapping.angles is None and mapping.hand is None:
         raise RecordingError(
             "the unit of the joint angles is not said, and a dataset does not state it",
-            remedy="Say angles: rad or angles: deg in recording.yaml in the dataset's folder. Per "
-            "cent of a joint's range has to be converted first.",
+            remedy="Say angles: rad, angles: deg or angles: percent (-100 to 100 of each joint's "
+            "range) in recording.yaml in the dataset's folder.",
             file=source / INFO,
         )
     files = sorted(source.glob("data/**/*.parquet"))

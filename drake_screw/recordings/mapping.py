@@ -38,8 +38,10 @@ class Mapping(Block):
     """Hz, of samples without a time, or of frames"""
     joints: tuple[str, ...] | dict[str, str] | None = None
     """columns in the order of the arm's joints, or a column for each joint's name"""
-    angles: Literal["rad", "deg"] | None = None
-    """unit of joint angles"""
+    angles: Literal["rad", "deg", "percent"] | None = None
+    """unit of joint angles; percent of each joint's range, -100 to 100"""
+    ranges: dict[str, tuple[Number, Number]] = Field(default={})
+    """rad or m, where a joint is at -100 and at 100 per cent: at its limits if left out"""
     hand: tuple[str, ...] | None = None
     """columns of the end effector's pose, if there are no joints: x, y, z and a quaternion"""
     quaternion: Literal["xyzw", "wxyz"] | None = None

@@ -53,7 +53,7 @@ def objects_of(
 
     X_WO, said, missing = [], [], []
     for i, item in enumerate(area.objects):
-        pose, how = np.eye(4), "not said yet"
+        pose, how = np.eye(4), f"not said yet; say it with --object {item.name}=x,y"
         place = mapping.objects.get(item.name)
         source = re.fullmatch(r"(topic|frame):(.+)", place) if isinstance(place, str) else None
         if source:

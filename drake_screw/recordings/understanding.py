@@ -19,6 +19,7 @@ from drake_screw.recordings.joint_columns import Matched, match_joints
 from drake_screw.recordings.mapping import FILE, Mapping
 from drake_screw.recordings.object_places import objects_of
 from drake_screw.recordings.places import FORMS
+from drake_screw.recordings.ranges import of_ranges
 from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.time_column import Time, time_of
 from drake_screw.robot import Arm
@@ -220,6 +221,15 @@ def _angles(
     arm = robot.arm
     raw = np.stack([table.numbers(name) for name in matched.columns], axis=1)
     turns = np.array([unit == "rad" for unit in arm.units])
+    if mapping.angles == "percent":
+        q, said = of_ranges(raw, arm, mapping.ranges, table.file)
+        return q, "percent", None, said
+    if mapping.ranges:
+        raise RecordingError(
+            "ranges: said of joints that are not in per cent of them",
+            remedy=f"Say angles: percent as well in {FILE}, or leave ranges out.",
+            file=table.file,
+        )
     lengths = mapping.lengths if (~turns).any() else None
     if lengths is None and (~turns).any():
         lengths = "m"
