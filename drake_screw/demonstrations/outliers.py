@@ -25,7 +25,7 @@ def plausible(
     names: Sequence[str],
     units: Sequence[str],
     fail: Callable[[int, str, str], RecordingError],
-    lines: Sequence[int],
+    lines: NDArray[np.int64],
 ) -> tuple[NDArray[np.bool_], str | None]:
     """Which samples to keep: all but single ones at which the arm cannot have been.
 

@@ -18,7 +18,7 @@ NEAR = 0.5
 
 def whole_turns(
     q: Array, lower: Array, upper: Array, units: Sequence[str], slack: float
-) -> NDArray[np.int64]:
+) -> NDArray[np.int8]:
     """By how many turns (m, n) the angles of limited joints are off; 0 where they are not.
 
     A joint's angles are counted on where they jump by whole turns, and then moved by those that
@@ -30,7 +30,7 @@ def whole_turns(
         units: n of "rad" or "m".
         slack: rad, that a limit may be exceeded by.
     """
-    turns = np.zeros(q.shape, dtype=np.int64)
+    turns = np.zeros(q.shape, dtype=np.int8)
     for j in np.flatnonzero(~is_endless(lower, upper)).tolist():
         low, high = lower[j] - slack, upper[j] + slack
         if units[j] != "rad" or ((q[:, j] >= low) & (q[:, j] <= high)).all():
@@ -51,7 +51,7 @@ def whole_turns(
     return turns
 
 
-def turns_in_words(turns: NDArray[np.int64], names: Sequence[str], first: Sequence[int]) -> str:
+def turns_in_words(turns: NDArray[np.int8], names: Sequence[str], first: NDArray[np.int64]) -> str:
     """What was done about angles a whole turn off.
 
     Args:

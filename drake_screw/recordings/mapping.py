@@ -40,7 +40,7 @@ class Mapping(Block):
     """columns in the order of the arm's joints, or a column for each joint's name"""
     angles: Literal["rad", "deg", "percent"] | None = None
     """unit of joint angles; percent of each joint's range, -100 to 100"""
-    ranges: dict[str, tuple[Number, Number]] = Field(default={})
+    ends: dict[str, tuple[Number, Number]] = Field(default={})
     """rad or m, where a joint is at -100 and at 100 per cent: at its limits if left out"""
     hand: tuple[str, ...] | None = None
     """columns of the end effector's pose, if there are no joints: x, y, z and a quaternion"""

@@ -18,7 +18,8 @@ _NAMES = (
     r"%?time$",
     r"t$",
     r"(time_?stamp|stamp)$",
-    r"%?(time|time_?stamp|stamp|clock|t)[ _.\[(/-]*(s|secs?|seconds?|ms|us|ns|\w{2,5}secs?)?[\])]?$",
+    r"%?(time|time_?stamp|stamp|clock|t)[ _.\[(/-]*"
+    r"(s|secs?|seconds?|ms|us|ns|\w{2,5}secs?)?[\])]?$",
     r".*time_?stamp.*|.*[._/]time$|.*elapsed.*|.*header\.stamp$",
     r"(frame|step|sample)(_?(index|number|id|nr))?$",
 )

@@ -14,12 +14,12 @@ from drake_screw.demonstrations.hand_poses import checked_hand
 from drake_screw.demonstrations.recording import CLAMPED_WITHIN, GAP, checked
 from drake_screw.demonstrations.turns import whole_turns
 from drake_screw.errors import RecordingError, suggestion
+from drake_screw.recordings.ends import of_ranges
 from drake_screw.recordings.hand_columns import hand_columns, hand_path, reached
 from drake_screw.recordings.joint_columns import Matched, match_joints
 from drake_screw.recordings.mapping import FILE, Mapping
 from drake_screw.recordings.object_places import objects_of
 from drake_screw.recordings.places import FORMS
-from drake_screw.recordings.ranges import of_ranges
 from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.time_column import Time, time_of
 from drake_screw.robot import Arm
@@ -222,12 +222,12 @@ def _angles(
     raw = np.stack([table.numbers(name) for name in matched.columns], axis=1)
     turns = np.array([unit == "rad" for unit in arm.units])
     if mapping.angles == "percent":
-        q, said = of_ranges(raw, arm, mapping.ranges, table.file)
+        q, said = of_ranges(raw, arm, mapping.ends, table.file)
         return q, "percent", None, said
-    if mapping.ranges:
+    if mapping.ends:
         raise RecordingError(
-            "ranges: said of joints that are not in per cent of them",
-            remedy=f"Say angles: percent as well in {FILE}, or leave ranges out.",
+            "ends: said of joints that are not in per cent of them",
+            remedy=f"Say angles: percent as well in {FILE}, or leave ends out.",
             file=table.file,
         )
     lengths = mapping.lengths if (~turns).any() else None

@@ -25,7 +25,7 @@ def setup() -> Setup:
 def dataset(folder: Path, files: list[list[int]], ends: np.ndarray | None = None) -> np.ndarray:
     """Episodes of 40 frames at 30 Hz in degrees, so many in each file; returns q (40, 7) rad.
 
-    In per cent instead where the ends (7, 2) of the joints' ranges are given.
+    In per cent instead where the ends (7, 2) of the joints' ends are given.
     """
     import pyarrow.parquet as pq
 
@@ -84,13 +84,13 @@ def test_per_cent_are_of_the_models_limits_or_of_what_is_said(setup: Setup, tmp_
     assert "of all that is taken to be the model's limits" in dict(found.facts)["angles"]
     ends[0], ends[3] = (-1.0, 2.0), (2.5, 0.5)
     q = dataset(tmp_path / "said", [[0]], ends)
-    ranges = {LEFT[0]: (-1.0, 2.0), LEFT[3]: (2.5, 0.5)}
-    mapping = NEAR.with_(angles="percent", ranges=ranges)
+    ends = {LEFT[0]: (-1.0, 2.0), LEFT[3]: (2.5, 0.5)}
+    mapping = NEAR.with_(angles="percent", ends=ends)
     (found,) = read_recordings(tmp_path / "said", setup, mapping)
     assert found.recording is not None
     np.testing.assert_allclose(found.recording.q, q, atol=1e-6)
     assert f"of {LEFT[1]}, {LEFT[2]}, {LEFT[4]}, " in dict(found.facts)["angles"]
-    assert found.mapping.ranges == ranges
+    assert found.mapping.ends == ends
 
 
 @pytest.mark.parametrize(
@@ -98,11 +98,11 @@ def test_per_cent_are_of_the_models_limits_or_of_what_is_said(setup: Setup, tmp_
     [
         ({"angles": "percent"}, "angles: percent, but there is a", "Say angles: deg"),
         (
-            {"angles": "percent", "ranges": {"left_s9": (0.0, 1.0)}},
-            "ranges: 'left_s9' is no joint of the arm",
+            {"angles": "percent", "ends": {"left_s9": (0.0, 1.0)}},
+            "ends: 'left_s9' is no joint of the arm",
             "Did you mean",
         ),
-        ({"angles": "deg", "ranges": {LEFT[0]: (0.0, 1.0)}}, "not in per cent", "angles: percent"),
+        ({"angles": "deg", "ends": {LEFT[0]: (0.0, 1.0)}}, "not in per cent", "angles: percent"),
     ],
 )
 def test_per_cent_that_cannot_be(

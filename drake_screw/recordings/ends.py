@@ -19,36 +19,36 @@ BEYOND = 5.0
 
 
 def of_ranges(
-    raw: Array, arm: Arm, ranges: Mapping[str, tuple[float, float]], file: Path | None
+    raw: Array, arm: Arm, ends: Mapping[str, tuple[float, float]], file: Path | None
 ) -> tuple[Array, str]:
     """Joint positions (m, n) in rad and m of per cent, -100 to 100, and how they were taken.
 
     Args:
         raw: (m, n) in per cent; not finite where there are none.
         arm: whose limits are the range of joints of which nothing is said.
-        ranges: rad or m by joint, at -100 and at 100.
+        ends: rad or m by joint, at -100 and at 100.
         file: they are from, for errors.
 
     Raises:
         RecordingError: a range is of no joint of the arm, a joint has neither a range nor limits,
             or the values are no per cent.
     """
-    for name in ranges:
+    for name in ends:
         if name not in arm.joint_names:
             raise RecordingError(
-                f"ranges: '{name}' is no joint of the arm",
+                f"ends: '{name}' is no joint of the arm",
                 remedy=suggestion(name, arm.joint_names, "Joints"),
                 file=file,
             )
     limits = zip(arm.joint_names, arm.lower.tolist(), arm.upper.tolist(), strict=True)
-    ends = np.array([ranges.get(name, (lower, upper)) for name, lower, upper in limits])
+    both = np.array([ends.get(name, (lower, upper)) for name, lower, upper in limits])
     endless = [
-        name for name, end in zip(arm.joint_names, ends, strict=True) if not np.isfinite(end).all()
+        name for name, end in zip(arm.joint_names, both, strict=True) if not np.isfinite(end).all()
     ]
     if endless:
         raise RecordingError(
             f"per cent of what? {', '.join(endless)} has no limits",
-            remedy=f"Say it under ranges: {{{endless[0]}: [-3.14, 3.14]}}.",
+            remedy=f"Say it under ends: {{{endless[0]}: [-3.14, 3.14]}}.",
             file=file,
         )
     most = float(np.nanmax(np.abs(raw), initial=0.0))
@@ -58,9 +58,9 @@ def of_ranges(
             remedy="Say angles: deg, or angles: rad.",
             file=file,
         )
-    assumed = [name for name in arm.joint_names if name not in ranges]
+    assumed = [name for name in arm.joint_names if name not in ends]
     said = "per cent of each joint's range, as said"
     if assumed:
         which = "all" if len(assumed) == arm.n else ", ".join(assumed)
         said += f"; of {which} that is taken to be the model's limits"
-    return ends[:, 0] + (raw + FULL) / (2.0 * FULL) * (ends[:, 1] - ends[:, 0]), said
+    return both[:, 0] + (raw + FULL) / (2.0 * FULL) * (both[:, 1] - both[:, 0]), said
