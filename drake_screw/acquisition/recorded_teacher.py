@@ -72,7 +72,9 @@ class RecordedTeacher:
         spent = {_key(r) for r in used}
         left = [r for r in self.recordings if _key(r) not in spent]
         if not left:
-            return Lesson(None, f"all {len(self.recordings)} recordings are used")
+            n = len(self.recordings)
+            used_up = "the only recording is" if n == 1 else f"all {n} recordings are"
+            return Lesson(None, f"{used_up} used")
         there = [r.X_WO if self.foreign is None else self.foreign.seen(r) for r in left]
         places = self.regions.area.x_y_yaw(np.stack(there))
         away = np.linalg.norm(places[..., :2] - suggestion.x_y_yaw[..., :2], axis=-1).sum(axis=-1)

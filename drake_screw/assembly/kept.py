@@ -8,6 +8,7 @@ from drake_screw.acquisition import RecordedTeacher
 from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.why_not import why_not
 from drake_screw.demonstrations import NoMotionKept, Recording
+from drake_screw.errors import counted
 
 
 def named_recordings(setup: Setup) -> tuple[Recording, ...]:
@@ -47,4 +48,5 @@ def _cannot_follow(setup: Setup, recording: Recording) -> str:
         return ""
     why = why_not(outcomes[0], [demonstration], X_WO, start, setup.careful_planner)
     why = why.removeprefix(f"with {demonstration.name}, ")
-    return f"; not planned where it was shown, of {len(demonstration.objects)} segments: {why}"
+    segments = counted(len(demonstration.objects), "segment")
+    return f"; not planned where it was shown, of {segments}: {why}"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from drake_screw.errors import counted
+
 ASKED_FIRST = {
     "random": "at a random place",
     "middle": "in the middle",
@@ -22,7 +24,8 @@ class PreviewedArm:
     reach: float
 
     def __str__(self) -> str:
-        return f"{self.model}, {len(self.joints)} joints, end effector '{self.end_effector}'"
+        joints = counted(len(self.joints), "joint")
+        return f"{self.model}, {joints}, end effector '{self.end_effector}'"
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from drake_screw.assembly.why_not import why_not
 from drake_screw.demonstrations import Demonstration
-from drake_screw.errors import ScenarioError
+from drake_screw.errors import ScenarioError, counted
 from drake_screw.execution import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Outcomes, Plan, Turned
 from drake_screw.planning.batch import BatchPlanner
@@ -116,7 +116,7 @@ class RankedPlan:
     def __str__(self) -> str:
         turned = "".join(f", with {turn}" for turn in self.turned)
         return (
-            f"{self.demonstration.name}{turned}: {len(self.plan.guides)} segments; "
+            f"{self.demonstration.name}{turned}: {counted(len(self.plan.guides), 'segment')}; "
             f"{self.tightest} comes nearest to a limit, {self.margin:.1%} of its range away; "
             f"{self._kept()}"
         )

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 from drake_screw.commands.options import JsonOption, VerboseOption
 from drake_screw.commands.output import Output
+from drake_screw.errors import counted
 
 EXAMPLE = "drake-screw list"
 
@@ -49,7 +50,8 @@ class Shipped:
         yield "robot models (robot.model: NAME in a scenario)"
         for model in self.models:
             first, last = model.joints[0], model.joints[-1]
-            yield f"  {model.name:<{width}}  {len(model.joints)} joints, {first} ... {last}"
+            joints = counted(len(model.joints), "joint")
+            yield f"  {model.name:<{width}}  {joints}, {first} ... {last}"
 
 
 def list_shipped(json: JsonOption = None, verbose: VerboseOption = False) -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from drake_screw.errors import counted
 from drake_screw.execution.report import Deviation, ExecutionReport
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.status import Phase
@@ -158,7 +159,7 @@ class TrialSummary:
     flawed: tuple[Remark, ...]
 
     def __str__(self) -> str:
-        lines = [f"{self.instances} instances, {self.executed} executed"]
+        lines = [f"{counted(self.instances, 'instance')}, {self.executed} executed"]
         lines += [f"  {remark}" for remark in self.without_plan]
         if self.worst is not None:
             least, most, mean = self.worst.time

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from drake_screw.assembly.sanity import missing_shapes
-from drake_screw.errors import ModelError, ScenarioError
+from drake_screw.errors import ModelError, ScenarioError, counted
 from drake_screw.onboarding.area import SMALLEST, WANTED, Survey, Verified
 from drake_screw.onboarding.arms import FoundArm, choose_arm
 from drake_screw.onboarding.at_height import NoArea, Place, Say, at_height
@@ -96,7 +96,7 @@ def design(
     hand = find_end_effector(robot, arm)
     others = [o for o in arms if not o.only_by_name and not set(o.joints) & set(arm.joints)]
     rest = parked(robot, arm, others)
-    say(f"arm '{arm.name}': {len(arm.joints)} joints, end effector '{hand.frame}'")
+    say(f"arm '{arm.name}': {counted(len(arm.joints), 'joint')}, end effector '{hand.frame}'")
     bare = _config(robot, arm, hand, rest)
     alone = build_workcell(bare)
     missing = missing_shapes(alone)

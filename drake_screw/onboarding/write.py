@@ -259,10 +259,8 @@ def _table_comment(design: Design) -> list[str]:
 def _why_high(design: Design) -> str:
     if design.on_the_table:
         return f"the robot stands on it (its shoulder is no higher than {LOW_SHOULDER:g} m)"
-    return (
-        "the arm reaches most there, of those heights about "
-        f"{USUAL:g} m below the shoulder that have a work area"
-    )
+    where = f"of those heights about {USUAL:g} m below the shoulder that have a work area"
+    return f"the arm reaches most there, {where}"
 
 
 def _cells(size: float) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.demonstrations.library import JOINTS
-from drake_screw.errors import RecordingError
+from drake_screw.errors import RecordingError, counted
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.recordings.raw import Raw
 from drake_screw.tables import Table, read_table
@@ -59,7 +59,8 @@ def read_rostopic(
     rows = np.array([row == usual for row in words])
     notes: tuple[str, ...] = ()
     if len(kinds) > 1:
-        notes = (f"left out {np.count_nonzero(~rows)} rows with the names of other joints",)
+        others = counted(int(np.count_nonzero(~rows)), "row")
+        notes = (f"left out {others} with the names of other joints",)
     kept = table.rows(rows)
     columns = {_ROSTOPIC: kept.numbers(_ROSTOPIC)}
     for joint, (_, column) in zip(usual, pairs, strict=True):

@@ -12,6 +12,7 @@ from drake_screw.acquisition import (
     RoundStarted,
     Suggestion,
 )
+from drake_screw.errors import counted
 from drake_screw.tasks import Regions
 
 
@@ -21,7 +22,7 @@ def describe(event: Event, regions: Regions) -> str:
         case RoundStarted():
             return f"round {event.round + 1}: evaluating {_count(len(event.demonstrations))}"
         case RegionsEvaluated():
-            return f"round {event.round + 1}: {event.samples.sum():,} instances"
+            return f"round {event.round + 1}: {counted(int(event.samples.sum()), 'instance')}"
         case RoundFinished():
             verdict = event.verdict
             weakest = verdict.estimates[verdict.region]

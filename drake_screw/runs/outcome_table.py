@@ -61,9 +61,13 @@ class OutcomeTable:
         )
         lines = [f"{count} in {self.seconds:.1f} s"]
         if self.outside:
-            lines.append(f"note: {self.outside:,} instances lie outside the work area")
+            lines.append(
+                f"note: {counted(self.outside, 'instance')} "
+                f"{'lies' if self.outside == 1 else 'lie'} outside the work area"
+            )
         lines += (
-            f"note: the scenario fixes {name}, and {count:,} instances have another one"
+            f"note: the scenario fixes {name}, and {counted(count, 'instance')} "
+            f"{'has' if count == 1 else 'have'} another one"
             for name, count in self.unlike_fixed.items()
         )
         lines += (f"  {name}: {rate:.1%}" for name, rate in self.success_rates.items())

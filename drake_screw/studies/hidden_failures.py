@@ -12,6 +12,7 @@ from drake_screw.acquisition import Evaluation, RoundFinished
 from drake_screw.bandits import Verdict, coverage_bound
 from drake_screw.bandits.mixture import confidence_interval
 from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import counted
 from drake_screw.studies.experiment import Experiment, StudyRun, run_seed, split
 from drake_screw.studies.figures import save_comparison
 from drake_screw.tasks import GridRegions, draw_in_all
@@ -69,9 +70,9 @@ def draw_hidden_failure(experiment: Experiment, runs: Sequence[StudyRun], stem: 
     middle, shown = found[len(found) // 2], found[-1]
     K = shown.coarse_regions.K, shown.fine_regions.K
     note = (
-        f"{hidden} of {len(found)} runs certified with K = {K[0]} leave a region of K = {K[1]} "
-        f"that fails more than {setup.goal.tau:.0%} of the time. The worst such region is shown; "
-        f"in the middle one of these runs it fails {middle.worst:.0%}."
+        f"{hidden} of {counted(len(found), 'run')} certified with K = {K[0]} leave a region of "
+        f"K = {K[1]} that fails more than {setup.goal.tau:.0%} of the time. The worst such region "
+        f"is shown; in the middle one of these runs it fails {middle.worst:.0%}."
     )
     save_comparison(
         (shown.coarse, shown.fine),

@@ -44,7 +44,7 @@ def test_what_the_scenario_fixes_needs_no_column(command, library, tmp_path) -> 
     ]
     code, out, _ = command(*fixed, "--instances", "x_y.csv", "--output", "out.csv")
     assert code == 0
-    assert "note: the scenario fixes y, and 1 instances have another one" in out
+    assert "note: the scenario fixes y, and 1 instance has another one" in out
     code, out, err = command(*pouring, "--instances", "x.csv", "--output", "other.csv")
     assert (code, out) == (2, "")
     assert "no column 'y', and it varies" in err

@@ -243,7 +243,7 @@ def test_library_faults(tmp_path: Path) -> None:
 
     (tmp_path / "empty").mkdir()
     assert "no recordings here" in fault(tmp_path / "empty")
-    assert "no such folder" in fault(tmp_path / "missing")
+    assert "no such file or folder" in fault(tmp_path / "missing")
     one = write(tmp_path / "library" / "demo_01")
     message = fault(one)
     assert "one recording, not a folder of recordings" in message

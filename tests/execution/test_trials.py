@@ -98,7 +98,7 @@ def test_what_is_done_and_touches_nothing_is_flawless(trials, executed) -> None:
 
 
 def test_nothing_executed_is_said_too(trials) -> None:
-    assert str(summarize(trials[2:])).splitlines()[0] == "1 instances, 0 executed"
+    assert str(summarize(trials[2:])).splitlines()[0] == "1 instance, 0 executed"
     for some, text in ((trials[1:], "nothing was executed as planned"), (trials, "region 4")):
         assert text in str(summarize(some)).splitlines()[-1]
 

@@ -50,7 +50,7 @@ def executed(run) -> tuple[str, Path, dict[str, bytes]]:
 
 def test_an_instance_is_executed_and_reported(executed) -> None:
     text, folder, _ = executed
-    assert "1 instances, 1 executed" in text
+    assert "1 instance, 1 executed" in text
     assert "done                       1 of 1" in text
     assert text.endswith(f"written to {folder}")
     assert sorted(f.name for f in folder.iterdir()) == [
@@ -86,7 +86,7 @@ def test_fresh_instances_are_drawn_until_enough_are_executed(run, executed) -> N
 
 def test_an_instance_without_a_plan_is_told_with_its_reason(run) -> None:
     text = str(execute(run, instance=OUTSIDE, workers=1))
-    assert "1 instances, 0 executed" in text
+    assert "1 instance, 0 executed" in text
     assert "no plan: with shown, " in text
     assert "segment" in text
 

@@ -101,7 +101,7 @@ def test_it_is_executed_and_exported(
     monkeypatch.setattr(Run, "demonstrations", (lesson,))
     new_run(scenario, tmp_path / "run", teacher=lambda _: SimpleNamespace())
     text = str(execute(tmp_path / "run", instance=AT, workers=1))
-    assert "1 instances, 1 executed" in text
+    assert "1 instance, 1 executed" in text
     assert re.search(r"with contact +0\n", text)
 
     exported = []

@@ -46,7 +46,7 @@ def test_the_check_tells_of_arm_and_recorder(folder: Path) -> None:
 
 def test_its_plans_are_executed(finished: Path) -> None:
     text = str(execute(finished, instance=[0.6, 0.1], workers=1))
-    assert "1 instances, 1 executed" in text
+    assert "1 instance, 1 executed" in text
     assert re.search(r"with contact +0\n", text)
 
 

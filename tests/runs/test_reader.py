@@ -132,4 +132,4 @@ def test_a_run_whose_teacher_had_nothing_at_all_is_replayed(tmp_path) -> None:
     assert again[-1].verdict is None
     assert len(again[-1].demonstrations) == len(end.demonstrations) == 1
     assert run.certificate is not None
-    assert run.certificate.statement == ("No initial demonstration: all 1 recordings are used.",)
+    assert run.certificate.statement == ("No initial demonstration: the only recording is used.",)

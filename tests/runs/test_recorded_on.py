@@ -217,7 +217,7 @@ def test_plans_are_executed_and_exported_with_the_own_arm(finished: Path, tmp_pa
     place = X[int(np.argmax(outcomes.any_success))][0, :2].tolist()
     before = set(finished.iterdir())
     text = str(execute(finished, instance=place, workers=1))
-    assert "1 instances, 1 executed" in text
+    assert "1 instance, 1 executed" in text
     assert {item.name for item in set(finished.iterdir()) - before} <= {"executions"}
     write_trajectory(finished, place, "npz", tmp_path / "plan.npz")
     with np.load(tmp_path / "plan.npz") as plan:
