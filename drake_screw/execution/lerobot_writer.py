@@ -56,7 +56,7 @@ def lerobot(plan: TimedPlan, arm: Arm, setting: Setting = NOWHERE) -> dict[str, 
             {"episode_index": 0, "stats": {name: _stats(x) for name, x in frames.items()}}
         ),
         DATA.format(episode_chunk=0, episode_index=0): file.getvalue(),
-        FILE: _said(setting).text().encode(),
+        FILE: _said(arm, setting).text().encode(),
     }
 
 
@@ -108,13 +108,14 @@ def _stats(values: Array) -> dict[str, list[Any]]:
     return {**{name: x.tolist() for name, x in numbers.items()}, "count": [len(values)]}
 
 
-def _said(setting: Setting) -> Mapping:
+def _said(arm: Arm, setting: Setting) -> Mapping:
     """What a dataset does not say itself: the unit of angles, and where the objects were."""
-    objects = {
-        name: tuple(tuple(row) for row in np.asarray(X).tolist())
+    objects: dict[str, Any] = {
+        name: tuple(tuple(row) for row in (np.asarray(X) + 0.0).tolist())
         for name, X in setting.X_WO.items()
     }
-    return Mapping(angles="rad", lengths="m", objects=objects)
+    lengths = "m" if "m" in arm.units else None
+    return Mapping(angles="rad", objects=objects).with_(lengths=lengths)
 
 
 def _line(item: dict[str, Any]) -> bytes:

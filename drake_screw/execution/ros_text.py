@@ -47,9 +47,8 @@ def joint_trajectory(
 
 def message_text(message: dict[str, Any]) -> bytes:
     """A message in YAML, as ``ros2 topic echo`` prints it and ``ros2 topic pub`` takes it."""
-    dumper = _Dumper
     return yaml.dump(
-        message, Dumper=dumper, sort_keys=False, default_flow_style=None, width=1000
+        message, Dumper=_Dumper, sort_keys=False, default_flow_style=None, width=1000
     ).encode()
 
 

@@ -12,6 +12,7 @@ from drake_screw.execution.setting import NOWHERE, PERIOD, Setting
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.robot import Arm
 
+
 def baxter_csv(plan: TimedPlan, arm: Arm) -> bytes:
     """The CSV of Baxter's recorder, which its trajectory playback program plays.
 
