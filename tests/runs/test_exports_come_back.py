@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -12,9 +13,10 @@ import numpy as np
 import pytest
 import yaml
 
-from drake_screw import Recording, RecordingError, Setup
+from drake_screw import RecordingError, Setup
 from drake_screw.acquisition import Suggestion
 from drake_screw.assembly.importing import read_recordings
+from drake_screw.demonstrations import Recording
 from drake_screw.errors import PluginError, RunDirectoryError
 from drake_screw.execution import TimedPlan
 from drake_screw.execution.setting import PERIOD
@@ -287,7 +289,7 @@ def test_without_its_library_the_extra_is_named(
     format: str, extra: str, run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in ("rosbags.rosbag2", "pyarrow"):
-        monkeypatch.setitem(__import__("sys").modules, name, None)
+        monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(PluginError, match=f"{format} needs") as caught:
         write_trajectory(run, PLACE, format, tmp_path / "out")
     assert f"drake-screw[{extra}]" in str(caught.value)
