@@ -27,8 +27,8 @@ def export(
         str,
         typer.Option(
             metavar="NAME",
-            help="baxter-csv, ros-trajectory, moveit-trajectory, npz, ros2-bag (with "
-            "drake-screw[ros]) or lerobot (with drake-screw[lerobot]).",
+            help="ros-trajectory, moveit-trajectory, npz, baxter-csv, ros2-bag or lerobot; the "
+            "last two need the extras ros and lerobot.",
         ),
     ] = "baxter-csv",
     verbose: VerboseOption = False,

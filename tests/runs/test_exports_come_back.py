@@ -18,7 +18,7 @@ from drake_screw.acquisition import Suggestion
 from drake_screw.assembly.importing import read_recordings
 from drake_screw.demonstrations import Recording
 from drake_screw.errors import PluginError, RunDirectoryError
-from drake_screw.execution import TimedPlan
+from drake_screw.execution import TimedPlan, TimeLimits
 from drake_screw.execution.setting import PERIOD
 from drake_screw.recordings import Mapping
 from drake_screw.runs.run import new_run, open_run
@@ -208,7 +208,7 @@ def as_message(store: Any, kind: str, data: dict[str, Any]) -> Any:
 
 
 def test_accelerations_are_those_of_the_velocities(
-    exported: Callable[[str], Path], setup: Setup, timed: TimedPlan
+    exported: Callable[[str], Path], timed: TimedPlan
 ) -> None:
     message = yaml.safe_load(exported("moveit-trajectory").read_text())
     points = message["joint_trajectory"]["points"]
@@ -218,7 +218,7 @@ def test_accelerations_are_those_of_the_velocities(
     a = np.array([p["accelerations"] for p in points])
     gained = np.diff(t)[:, None] * (a[1:] + a[:-1]) / 2.0
     np.testing.assert_allclose(np.cumsum(gained, axis=0), v[1:] - v[0], atol=2e-3)
-    assert 0.5 < np.abs(a).max() < 1.02 * setup.scenario.execution.acceleration
+    assert 0.5 < np.abs(a).max() < 1.02 * TimeLimits().acceleration
     np.testing.assert_array_equal(a[[0, -1]], 0.0)
 
 
@@ -294,3 +294,16 @@ def test_without_its_library_the_extra_is_named(
         write_trajectory(run, PLACE, format, tmp_path / "out")
     assert f"drake-screw[{extra}]" in str(caught.value)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_an_exporter_of_ones_own_may_write_a_folder_and_ask_for_the_objects(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "my_exporter.py").write_text(
+        "def places(plan, arm, setting):\n"
+        "    text = [f'{name} {X[0, 3]:.2f} {setting.base}' for name, X in setting.X_WO.items()]\n"
+        "    return {'deep/places.txt': text[0].encode()}\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    write_trajectory(run, PLACE, "my_exporter:places", tmp_path / "out")
+    assert (tmp_path / "out" / "deep" / "places.txt").read_text() == "bowl 0.85 base"
