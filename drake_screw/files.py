@@ -9,7 +9,7 @@ import io
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
 from functools import lru_cache
@@ -58,10 +58,48 @@ def write_folder(folder: Path, fill: Callable[[Path], None]) -> None:
     """
     temporary = folder.with_name(f".{folder.name}.part")
     shutil.rmtree(temporary, ignore_errors=True)
-    temporary.mkdir(parents=True)
-    fill(temporary)
-    shutil.rmtree(folder, ignore_errors=True)
-    os.replace(temporary, folder)
+    try:
+        temporary.mkdir(parents=True)
+        fill(temporary)
+        shutil.rmtree(folder, ignore_errors=True)
+        os.replace(temporary, folder)
+    except BaseException:
+        shutil.rmtree(temporary, ignore_errors=True)
+        raise
+
+
+def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write a folder of some files so that it is there whole or not at all.
+
+    A folder that holds nothing else is replaced.
+
+    Args:
+        folder: to appear, in one that exists.
+        files: their contents, by their paths in the folder.
+
+    Raises:
+        RunDirectoryError: the folder holds other files.
+        OSError: it cannot be written.
+    """
+    folder = folder.resolve()
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(folder))
+    there = {item.relative_to(folder).as_posix() for item in folder.rglob("*") if item.is_file()}
+    if others := sorted(there - files.keys()):
+        raise RunDirectoryError(
+            f"cannot be written: the folder holds other files, {others[0]} for one",
+            remedy="Give another --output; only an earlier export is replaced.",
+            file=folder,
+        )
+    if not folder.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(folder))
+
+    def fill(new: Path) -> None:
+        for name, content in files.items():
+            (new / name).parent.mkdir(parents=True, exist_ok=True)
+            (new / name).write_bytes(content)
+
+    write_folder(folder, fill)
 
 
 def writable(option: str) -> str:

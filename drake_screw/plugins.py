@@ -62,11 +62,15 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
         "bag": "drake_screw.recordings.ros_bags:read_bag",
         "lerobot": "drake_screw.recordings.lerobot:read_lerobot",
         "hdf5": "drake_screw.recordings.robosuite_hdf5:read_hdf5",
+        "trajectory": "drake_screw.recordings.ros_trajectory:read_trajectory",
     },
     "exporters": {
         "baxter-csv": "drake_screw.execution.trajectory_formats:baxter_csv",
         "ros-trajectory": "drake_screw.execution.trajectory_formats:ros_trajectory",
+        "moveit-trajectory": "drake_screw.execution.trajectory_formats:moveit_trajectory",
         "npz": "drake_screw.execution.trajectory_formats:npz",
+        "ros2-bag": "drake_screw.execution.ros_bag_writer:ros2_bag",
+        "lerobot": "drake_screw.execution.lerobot_writer:lerobot",
     },
 }
 """Where the parts of each group are defined; the first strategy is the default one."""

@@ -17,8 +17,20 @@ EXAMPLE = "drake-screw export runs/pouring/TIME --instance bowl=0.9,0.3 --output
 def export(
     run: RunArgument,
     instance: Annotated[list[str], instance_option("Where the objects stand.")],
-    output: Annotated[Path, typer.Option(metavar="FILE", help="Where to write the trajectory.")],
-    format: Annotated[str, typer.Option(help="baxter-csv, ros-trajectory or npz.")] = "baxter-csv",
+    output: Annotated[
+        Path,
+        typer.Option(
+            metavar="FILE", help="Where to write the trajectory; ros2-bag and lerobot are folders."
+        ),
+    ],
+    format: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="ros-trajectory, moveit-trajectory, npz, baxter-csv, ros2-bag or lerobot; the "
+            "last two need the extras ros and lerobot.",
+        ),
+    ] = "baxter-csv",
     verbose: VerboseOption = False,
 ) -> None:
     """Write a plan as a trajectory that the robot can play."""

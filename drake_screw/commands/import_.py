@@ -54,7 +54,8 @@ def import_(
         str | None,
         typer.Option(
             metavar="NAME",
-            help="Of the files: table, rostopic, bag, lerobot, hdf5. Default: told by them.",
+            help="Of the files: table, rostopic, bag, lerobot, hdf5, trajectory. Default: told by "
+            "them.",
         ),
     ] = None,
     rate: Annotated[

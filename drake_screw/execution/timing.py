@@ -156,6 +156,13 @@ class TimedPlan:
         """
         whole = np.arange(0.0, self.duration - 1e-9, period)
         t = np.append(whole, self.duration)
+        return t, *self.path(t)
+
+    def path(self, t: Array) -> tuple[Array, Array]:
+        """Joint path q (m, n) and velocities v (m, n) at ascending times t (m,) in s.
+
+        Before and after the plan the arm rests.
+        """
         begins = np.cumsum([0.0, *(piece.duration for piece in self.segments)])
         number = np.clip(np.searchsorted(begins, t) - 1, 0, len(self.segments) - 1)
         parts = [
@@ -163,7 +170,7 @@ class TimedPlan:
             for i, piece in enumerate(self.segments)
         ]
         q, v = (np.concatenate([part[k] for part in parts]) for k in (2, 3))
-        return t, q, v
+        return q, v
 
 
 def time_plan(

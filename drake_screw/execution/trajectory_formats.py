@@ -5,14 +5,12 @@ from __future__ import annotations
 import io
 
 import numpy as np
-import yaml
 
 from drake_screw.demonstrations.baxter_csv import csv_text
+from drake_screw.execution.ros_text import accelerations, joint_trajectory, message_text
+from drake_screw.execution.setting import NOWHERE, PERIOD, Setting
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.robot import Arm
-
-PERIOD = 0.01
-"""s, between samples of an exported trajectory; the recorder's own."""
 
 
 def baxter_csv(plan: TimedPlan, arm: Arm) -> bytes:
@@ -28,27 +26,18 @@ def baxter_csv(plan: TimedPlan, arm: Arm) -> bytes:
 def ros_trajectory(plan: TimedPlan, arm: Arm) -> bytes:
     """A trajectory_msgs/JointTrajectory message in YAML: positions and velocities."""
     t, q, v = plan.sampled(PERIOD)
-    nanoseconds = np.rint(1e9 * t).astype(np.int64)
-    message = {
-        "header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""},
-        "joint_names": list(arm.joint_names),
-        "points": [
-            {
-                "positions": positions,
-                "velocities": velocities,
-                "accelerations": [],
-                "effort": [],
-                "time_from_start": {"sec": time // 10**9, "nanosec": time % 10**9},
-            }
-            for time, positions, velocities in zip(
-                nanoseconds.tolist(),
-                (np.round(q, 9) + 0.0).tolist(),
-                (np.round(v, 9) + 0.0).tolist(),
-                strict=True,
-            )
-        ],
-    }
-    return yaml.safe_dump(message, sort_keys=False, default_flow_style=None, width=1000).encode()
+    return message_text(joint_trajectory(t, q, v, None, arm.joint_names))
+
+
+def moveit_trajectory(plan: TimedPlan, arm: Arm, setting: Setting = NOWHERE) -> bytes:
+    """A moveit_msgs/RobotTrajectory message in YAML: positions, velocities and accelerations.
+
+    Its frame is the robot's base. No joint has more than one degree of freedom.
+    """
+    t, q, v = plan.sampled(PERIOD)
+    joints = joint_trajectory(t, q, v, accelerations(plan, t), arm.joint_names, setting.base)
+    several = {"header": joints["header"], "joint_names": [], "points": []}
+    return message_text({"joint_trajectory": joints, "multi_dof_joint_trajectory": several})
 
 
 def npz(plan: TimedPlan, arm: Arm) -> bytes:

@@ -30,6 +30,10 @@ SUFFIXES = {
 """Formats by the suffixes of files."""
 
 
+NAMED = {".yaml": "trajectory", ".yml": "trajectory"}
+"""Formats of files that are given themselves: among others in a folder they may be anything."""
+
+
 FOLDERS = ("lerobot",)
 """Formats of folders."""
 
@@ -134,12 +138,13 @@ def _beside(file: Path, mapping: Mapping) -> Mapping:
 
 
 def _format(file: Path) -> str:
-    format = _folder_format(file) if file.is_dir() else SUFFIXES.get(file.suffix.lower())
+    known = {**SUFFIXES, **NAMED}
+    format = _folder_format(file) if file.is_dir() else known.get(file.suffix.lower())
     if format is None:
         raise RecordingError(
             f"the format cannot be told by '{file.suffix}'",
             remedy="Say it with --format: table for text. Known by their suffix: "
-            + ", ".join(SUFFIXES),
+            + ", ".join(known),
             file=file,
         )
     return "rostopic" if format == "table" and is_rostopic(file) else format

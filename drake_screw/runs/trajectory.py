@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from drake_screw.assembly.placing import InstanceLike, placed
+from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
 from drake_screw.errors import ScenarioError
-from drake_screw.files import WRITABLE_OUTPUT, write_bytes, writing
+from drake_screw.execution.setting import Setting
+from drake_screw.execution.timing import TimedPlan
+from drake_screw.files import WRITABLE_OUTPUT, write_bytes, write_files, writing
 from drake_screw.plugins import find, names
 from drake_screw.robot import Arm
 from drake_screw.runs.run import open_run
-from drake_screw.typing import PathLike
+from drake_screw.typing import Array, PathLike
 
 
 @dataclass(frozen=True)
@@ -22,7 +28,7 @@ class Trajectory:
     """A written trajectory; as text it is what ``drake-screw export`` prints.
 
     Attributes:
-        output: the file.
+        output: the file, or the folder of a format of several files.
         format: of the file, a name that `plugins.find` knows as an exporter.
         demonstration: name of the one whose plan it is.
         segments: of the plan.
@@ -69,7 +75,7 @@ def write_trajectory(
         instance: {object: (x, y[, yaw])}, or the numbers of all objects in their order, as `placed`
             takes them.
         format: of the file, a name that `plugins.find` knows as an exporter.
-        output: file to write; it is replaced.
+        output: file to write; it is replaced. So is a folder that an earlier export wrote.
 
     Raises:
         DrakeScrewError: there is no such format or it is of another robot, the instance is not
@@ -83,7 +89,11 @@ def write_trajectory(
     best = setup.plan(opened.demonstrations, x_y_yaw, most=1)
     output = Path(output)
     with writing(output, WRITABLE_OUTPUT):
-        write_bytes(output, writer(best.timed, setup.workcell.arm))
+        content = _content(writer, best.timed, setup, x_y_yaw)
+        if isinstance(content, bytes):
+            write_bytes(output, content)
+        else:
+            write_files(output, content)
     return Trajectory(
         output=output,
         format=format,
@@ -96,6 +106,30 @@ def write_trajectory(
         outside=not setup.area.contains(x_y_yaw),
         assumed=setup.workcell.arm.assumptions,
     )
+
+
+def _content(
+    writer: Callable[..., Any], plan: TimedPlan, setup: Setup, x_y_yaw: Array
+) -> bytes | Mapping[str, bytes]:
+    """What an exporter makes of a plan; one that asks for the setting is given it."""
+    content: bytes | Mapping[str, bytes]
+    arm = setup.workcell.arm
+    if "setting" not in signature(writer).parameters:
+        content = writer(plan, arm)
+        return content
+    X_WO = setup.area.X_WO(x_y_yaw[None])[0]
+    scenario = setup.scenario
+    content = writer(
+        plan,
+        arm,
+        setting=Setting(
+            base=str(scenario.robot.base),
+            X_WO={item.name: X for item, X in zip(setup.area.objects, X_WO, strict=True)},
+            robot=Path(str(scenario.robot.model)).stem,
+            task=scenario.description or scenario.name,
+        ),
+    )
+    return content
 
 
 def _words(turned: dict[str, float]) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from drake_screw.plugins import BUILT_IN, Group
 from tests.commands.conftest import Command
 
 VERBS = [
@@ -67,6 +68,12 @@ def test_the_verbs_are_listed(command: Command) -> None:
     assert not any(line.endswith("...") for line in listed)
     assert "--install-completion" in out
     assert "--show-completion" in out
+
+
+@pytest.mark.parametrize(("verb", "group"), [("export", "exporters"), ("import", "sources")])
+def test_formats_are_listed_whole(command: Command, verb: str, group: Group) -> None:
+    _, out, _ = command(verb, "--help")
+    assert [name for name in BUILT_IN[group] if name not in out] == []
 
 
 def test_no_verb_at_all_shows_the_help(command: Command) -> None:

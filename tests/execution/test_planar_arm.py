@@ -58,4 +58,7 @@ def test_it_is_executed(config: StationConfig, lesson: Demonstration, plan: Plan
 def test_it_is_exported(workcell: Workcell, lesson: Demonstration, plan: Plan, format: str) -> None:
     arm = workcell.arm
     poses = np.concatenate([arm.pose(plan.q[:1]), lesson.transfer(X_WO)])
-    assert len(find("exporters", format)(time_plan(plan, poses, arm), arm)) > 1000
+    pytest.importorskip({"ros2-bag": "rosbags", "lerobot": "pyarrow"}.get(format, "numpy"))
+    content = find("exporters", format)(time_plan(plan, poses, arm), arm)
+    files = [content] if isinstance(content, bytes) else content.values()
+    assert sum(map(len, files)) > 1000
