@@ -27,8 +27,8 @@ def describe(event: Event, regions: Regions) -> str:
             verdict = event.verdict
             weakest = verdict.estimates[verdict.region]
             return (
-                f"round {event.round + 1}: {len(event.evaluation.region):,} instances; weakest "
-                f"region {verdict.region} ({event.regions.name(verdict.region)}) fails "
+                f"round {event.round + 1}: {counted(len(event.evaluation.region), 'instance')}; "
+                f"weakest region {verdict.region} ({event.regions.name(verdict.region)}) fails "
                 f"{weakest:.2%}; "
                 f"{verdict.reason}"
             )

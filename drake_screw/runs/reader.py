@@ -23,7 +23,7 @@ from drake_screw.acquisition.loop import initial_places
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
-from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.errors import RunDirectoryError, ScenarioError, counted
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.codec import REMEDY, load_evaluation
 from drake_screw.runs.directory import INSTANCES, SCENARIO, RunDirectory
@@ -103,7 +103,8 @@ class RunReader:
         status = Status.CERTIFIED if ends else Status.INSUFFICIENT
         if status != record.status:
             raise self._odd(
-                f"it ends as '{status}' after {self.rounds} rounds; run.json says '{record.status}'"
+                f"it ends as '{status}' after {counted(self.rounds, 'round')}; run.json says "
+                f"'{record.status}'"
             )
         yield Finished(status, record.reason or "", verdict, self.demonstrations(known))
 

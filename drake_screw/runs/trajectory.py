@@ -13,7 +13,7 @@ import numpy as np
 from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
-from drake_screw.errors import ScenarioError
+from drake_screw.errors import ScenarioError, counted
 from drake_screw.execution.setting import Setting
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.files import WRITABLE_OUTPUT, write_bytes, write_files, writing
@@ -58,8 +58,8 @@ class Trajectory:
             [
                 *lines,
                 f"planned with {self.demonstration}{_words(self.turned)}: "
-                f"{self.segments} segments, {self.duration:.1f} s; {self.tightest} comes nearest "
-                f"to a limit, {self.margin:.1%} of its range away",
+                f"{counted(self.segments, 'segment')}, {self.duration:.1f} s; "
+                f"{self.tightest} comes nearest to a limit, {self.margin:.1%} of its range away",
                 f"written to {self.output}",
             ]
         )

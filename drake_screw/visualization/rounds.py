@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import counted
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
@@ -82,8 +83,8 @@ class Sample:
     def statement(self) -> str:
         """How much of the round is shown, in words."""
         if len(self.cause) == self.total:
-            return f"all {self.total:,} instances"
-        return f"{len(self.cause):,} of {self.total:,} instances, drawn at random"
+            return f"all {counted(self.total, 'instance')}"
+        return f"{len(self.cause):,} of {counted(self.total, 'instance')}, drawn at random"
 
     def count(self, cause: Cause) -> int:
         """How many of the shown instances ended so."""
