@@ -14,6 +14,7 @@ from drake_screw.demonstrations.hand_poses import checked_hand
 from drake_screw.demonstrations.recording import CLAMPED_WITHIN, GAP, checked
 from drake_screw.demonstrations.turns import whole_turns
 from drake_screw.errors import RecordingError, suggestion
+from drake_screw.recordings.episodes import coordinates, episodes, hint
 from drake_screw.recordings.hand_columns import hand_columns, hand_path, reached
 from drake_screw.recordings.joint_columns import Matched, match_joints
 from drake_screw.recordings.mapping import FILE, Mapping
@@ -97,16 +98,19 @@ def understand(
         notes=raw.notes, source=None if table.file is None else table.file.resolve(),
         X_WE=motion.X_WE,
     )  # fmt: skip
-    X_WO, places, missing = objects_of(raw, mapping, robot.arm, robot.area, draft)
-    if missing and objects_needed:
+    placed = objects_of(raw, mapping, robot.arm, robot.area, robot.base, draft)
+    if placed.missing and objects_needed:
+        name = placed.missing[0]
         raise RecordingError(
-            f"where was the {missing[0]}? The file does not say",
-            remedy=f"Say it with --object {missing[0]}=x,y, or in {FILE} under objects. {FORMS}",
+            f"where was the {name}? The file does not say",
+            remedy=f"Say it with --object {name}=x,y, or in {FILE} under objects. {FORMS}",
             file=table.file,
         )
     found = _checked(draft, table, robot)
-    if not missing:
-        found = replace(found, X_WO=X_WO)
+    several = hint(time.t, motion.coordinates) if mapping.episodes is None else ()
+    found = replace(found, notes=(*found.notes, *placed.notes, *several))
+    if not placed.missing:
+        found = replace(found, X_WO=placed.X_WO)
         notes = check_objects(found, robot.arm, robot.names, robot.base, file=table.file)
         found = replace(found, notes=(*found.notes, *notes))
     said = mapping.with_(
@@ -120,10 +124,10 @@ def understand(
         ("time", time.said),
         *motion.facts,
         ("gaps", _gaps(time.t)),
-        *(("object", line) for line in places),
+        *(("object", line) for line in placed.said),
         *(("note", note) for note in found.notes),
     )
-    return Understood(None if missing else found, raw.name, facts, said)
+    return Understood(None if placed.missing else found, raw.name, facts, said)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +139,25 @@ class _Motion:
     X_WE: Array | None
     keys: dict[str, Any]
     facts: tuple[tuple[str, str], ...]
+
+    @property
+    def coordinates(self) -> Array:
+        """What moves, as `episodes.coordinates` has it."""
+        return coordinates(self.q, self.X_WE)
+
+
+def episodes_of(raw: Raw, mapping: Mapping, robot: Robot) -> tuple[Raw, ...]:
+    """The recordings that one file holds, where its mapping says that it is to be cut.
+
+    Raises:
+        RecordingError: something cannot be told, or there is nothing to cut it by.
+    """
+    if mapping.episodes is None or not len(raw.table):
+        return (raw,)
+    mapping = mapping.with_told(dict(raw.told))
+    time = time_of(raw.table, mapping)
+    motion = _motion(raw.table, mapping, robot, time)
+    return episodes(raw, mapping, time.t, motion.coordinates)
 
 
 def _motion(table: Table, mapping: Mapping, robot: Robot, time: Time) -> _Motion:
