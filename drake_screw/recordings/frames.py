@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping as Dict
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -82,6 +83,10 @@ class Track:
         return np.asarray(pose(R, (1.0 - s) * self.p[i] + s * self.p[i + 1]))
 
 
+_Link = tuple[Track, bool, str]
+"""A track, whether it is followed from parent to child, and the frame that it leads to."""
+
+
 @dataclass(frozen=True, eq=False)
 class Seen:
     """Poses X_BO (m, 4, 4) of a frame at times t (m,), seen from the robot's base, and how."""
@@ -141,15 +146,23 @@ class Frames:
         root, links = chain
         moving = [track for track, _, _ in links if not track.static]
         t = moving[-1].t if moving else np.array([ALWAYS])
-        X = np.broadcast_to(np.eye(4), (len(t), 4, 4))
-        for track, forward, _ in links:
-            step = track.at(t)
-            X = X @ (step if forward else inverse(step))
+        X = _along(links, t)
         between = [at for _, _, at in links[:-1]]
         how = f"seen from '{base}'"
         if root != base:
             how = f"seen from a frame without a name, taken for '{base}'"
         return Seen(t, X, how + (f" by way of {', '.join(between)}" if between else ""))
+
+    def between(self, base: str, frame: str, t: Array) -> Array:
+        """X_BF (m, 4, 4) of a frame at times t (m,).
+
+        Raises:
+            LookupError: no chain of transforms leads from one to the other.
+        """
+        chain = self._chain(base, frame)
+        if chain is None or chain[0] != base:
+            raise LookupError(frame)
+        return _along(chain[1], t)
 
     def _node(self, name: str) -> str | None:
         children = {child for pair in self.tracks for child in pair}
@@ -158,12 +171,11 @@ class Frames:
                 return node
         return None
 
-    def _chain(self, base: str, node: str) -> tuple[str, list[tuple[Track, bool, str]]] | None:
+    def _chain(self, base: str, node: str) -> tuple[str, list[_Link]] | None:
         """The shortest chain from the base, or from a frame without a name, if there is any.
 
         Returns:
-            Where it begins; its tracks, whether each is followed from parent to child, and the
-            frame that it leads to.
+            Where it begins, and its links.
         """
         beside: dict[str, list[tuple[str, Track, bool]]] = {}
         for (parent, child), track in self.tracks.items():
@@ -179,7 +191,7 @@ class Frames:
                     waiting.append(there)
         if node not in before:
             return None
-        chain: list[tuple[Track, bool, str]] = []
+        chain: list[_Link] = []
         at, step = node, before[node]
         while step is not None:
             chain.append((step[1], step[2], at))
@@ -219,3 +231,12 @@ class Frames:
             remedy=f"{remedy} Or say where the object was with --object. Frames: {listed}",
             file=file,
         )
+
+
+def _along(links: Sequence[_Link], t: Array) -> Array:
+    """Poses (m, 4, 4) at times t (m,) of what a chain leads to, seen from where it begins."""
+    X = np.broadcast_to(np.eye(4), (len(t), 4, 4))
+    for track, forward, _ in links:
+        step = track.at(t)
+        X = X @ (step if forward else inverse(step))
+    return X

@@ -9,6 +9,7 @@ import numpy as np
 
 from drake_screw.demonstrations import Recording
 from drake_screw.errors import RecordingError, suggestion
+from drake_screw.recordings.frames import plain_frame
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.recordings.places import Given
 from drake_screw.recordings.raw import Raw
@@ -111,3 +112,21 @@ def _path(recording: Recording, arm: Arm, rows: Array) -> Array:
     """X_WE of some samples."""
     X_WE = recording.X_WE
     return arm.pose(recording.q[rows]) if X_WE is None else X_WE[rows]
+
+
+def hand_from_base(
+    raw: Raw, mapping: Mapping, base: str, t: Array, X: Array
+) -> tuple[Array, tuple[str, ...]]:
+    """Hand poses X (m, 4, 4) at times t (m,) seen from the robot's base, and a note if need be.
+
+    They are left as they are, with a note, where nothing says where their frame is.
+    """
+    base, frame = plain_frame(mapping.base_frame or base), raw.hand_frame
+    if frame in ("", base):
+        return X, ()
+    try:
+        X_BF = raw.frames.between(base, frame, t + raw.begin)
+    except LookupError:
+        note = f"the hand's poses are seen from '{frame}'; that is taken for the robot's base "
+        return X, (note + f"'{base}', since no transforms lead from there to it",)
+    return X_BF @ X, (f"the hand's poses were seen from '{frame}', and are from '{base}' now",)

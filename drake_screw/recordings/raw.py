@@ -38,6 +38,7 @@ class Raw:
         notes: what was left out, in words.
         frames: poses over time that the format holds.
         labels: what `Mapping.episodes` may name beside columns.
+        hand_frame: what the table's hand poses are seen from, where the format says so.
         begin: s, the time of the table's first row on the clock of frames and labels.
     """
 
@@ -48,4 +49,5 @@ class Raw:
     notes: tuple[str, ...] = ()
     frames: Frames = field(default_factory=Frames)
     labels: Dict[str, Labels] = field(default_factory=dict)
+    hand_frame: str = ""
     begin: float = 0.0

@@ -28,6 +28,8 @@ SPAN = 0.5
 """s in which most of the poses have to be elsewhere if the object has moved."""
 JITTER = 1e-3
 """m by which half of the poses may be off without a note."""
+SAME = 1e-5
+"""m and rad, within which half of the poses are all but equal."""
 FEW = 3
 """Poses, of which less are no sample to take a median of."""
 
@@ -79,6 +81,8 @@ def at_rest(name: str, t: Array, X_WO: Array, hand_t: Array, p_WE: Array) -> Res
     turn = float(np.median(rotation_angle(X, standing)))
     how = f"the median of {counted(len(standing), 'pose')} {until}"
     spread = f"half of them within {off * 1e3:.1f} mm and {turn:.3f} rad of it"
+    if max(off, turn) < SAME:
+        spread = "most of them the same"
     if off > JITTER:
         notes = (*notes, f"the {name} is taken to be at {how}, {spread}")
     return Resting(X, f"{how}, {spread}", notes)

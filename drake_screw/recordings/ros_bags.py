@@ -59,11 +59,13 @@ def read_bag(source: Path, mapping: Mapping, progress: Progress | None = None) -
             rows: list[_Row] = []
             labels: list[tuple[int, Any]] = []
             poses = _Poses()
+            hand_frame = ""
             begin, length = reader.start_time, max(reader.duration, 1)
             for count, (connection, stamp, raw) in enumerate(reader.messages(connections=wanted)):
                 message = reader.deserialize(raw, connection.msgtype)
                 if connection.topic == topic:
                     rows.append(_row(message, stamp, connection.msgtype))
+                    hand_frame = hand_frame or plain_frame(message.header.frame_id)
                 elif connection.topic == cuts:
                     labels.append((stamp, message.data))
                 else:
@@ -82,8 +84,12 @@ def read_bag(source: Path, mapping: Mapping, progress: Progress | None = None) -
     if cuts:
         t = np.array([(stamp - first) * 1e-9 for stamp, _ in labels])
         said[cuts] = Labels(t, tuple(value for _, value in labels))
-    frames = poses.frames(first)
-    return (Raw(source.stem, table, told, notes=notes, frames=frames, labels=said),)
+    return (
+        Raw(
+            source.stem, table, told, notes=notes, frames=poses.frames(first), labels=said,
+            hand_frame="" if kinds[topic] == JOINTS else hand_frame,
+        ),
+    )  # fmt: skip
 
 
 def _described(source: Path) -> bool:

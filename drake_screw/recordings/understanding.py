@@ -18,7 +18,7 @@ from drake_screw.recordings.episodes import coordinates, episodes, hint
 from drake_screw.recordings.hand_columns import hand_columns, hand_path, reached
 from drake_screw.recordings.joint_columns import Matched, match_joints
 from drake_screw.recordings.mapping import FILE, Mapping
-from drake_screw.recordings.object_places import objects_of
+from drake_screw.recordings.object_places import hand_from_base, objects_of
 from drake_screw.recordings.places import FORMS
 from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.time_column import Time, time_of
@@ -92,11 +92,11 @@ def understand(
     if not len(table):
         raise RecordingError("no rows", remedy="Record it again.", file=table.file)
     time = time_of(table, mapping)
-    motion = _motion(table, mapping, robot, time)
+    motion = _motion(raw, mapping, robot, time)
     draft = Recording(
         raw.name, motion.joints, time.t, motion.q, np.tile(np.eye(4), (len(robot.names), 1, 1)),
-        notes=raw.notes, source=None if table.file is None else table.file.resolve(),
-        X_WE=motion.X_WE,
+        notes=(*raw.notes, *motion.notes), X_WE=motion.X_WE,
+        source=None if table.file is None else table.file.resolve(),
     )  # fmt: skip
     placed = objects_of(raw, mapping, robot.arm, robot.area, robot.base, draft)
     if placed.missing and objects_needed:
@@ -139,6 +139,7 @@ class _Motion:
     X_WE: Array | None
     keys: dict[str, Any]
     facts: tuple[tuple[str, str], ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def coordinates(self) -> Array:
@@ -156,17 +157,17 @@ def episodes_of(raw: Raw, mapping: Mapping, robot: Robot) -> tuple[Raw, ...]:
         return (raw,)
     mapping = mapping.with_told(dict(raw.told))
     time = time_of(raw.table, mapping)
-    motion = _motion(raw.table, mapping, robot, time)
+    motion = _motion(raw, mapping, robot, time)
     return episodes(raw, mapping, time.t, motion.coordinates)
 
 
-def _motion(table: Table, mapping: Mapping, robot: Robot, time: Time) -> _Motion:
+def _motion(raw: Raw, mapping: Mapping, robot: Robot, time: Time) -> _Motion:
     """The joints' motion where there are joints, else the hand's.
 
     Raises:
         RecordingError: there is neither.
     """
-    arm = robot.arm
+    arm, table = robot.arm, raw.table
     matched = None if mapping.hand else _joints(table, mapping, arm, time)
     hand = hand_columns(table, mapping) if matched is None else None
     if matched is None and hand is None:
@@ -179,12 +180,13 @@ def _motion(table: Table, mapping: Mapping, robot: Robot, time: Time) -> _Motion
             line=table.header,
         )
     if matched is None and hand is not None:
-        X_WE, unit = hand_path(table, hand, mapping), mapping.lengths or "m"
+        X_FE, unit = hand_path(table, hand, mapping), mapping.lengths or "m"
+        X_WE, notes = hand_from_base(raw, mapping, robot.base, time.t, X_FE)
         keys: dict[str, Any] = {"hand": hand.columns, "lengths": unit}
         if hand.order != "matrix":
             keys["quaternion"] = hand.order
         facts = (("hand", hand.how), ("arm", reached(arm, X_WE, time.t)))
-        return _Motion((), np.zeros((len(table), 0)), X_WE, keys, facts)
+        return _Motion((), np.zeros((len(table), 0)), X_WE, keys, facts, notes)
     assert matched is not None
     q, angles, lengths, said = _angles(table, matched, mapping, robot)
     listed = f"{matched.how}: {', '.join(matched.columns)}"
