@@ -21,6 +21,7 @@ STANDING = 0.01
 """rad or m, by which the arm usually may move in a pause."""
 LEAST = 10.0
 """times that, by which the arm moves in a demonstration."""
+_LOOKED_AT = 50_000
 _BINS = 20
 """of time, in a pause of the least length."""
 
@@ -126,7 +127,12 @@ def episodes(raw: Raw, mapping: Mapping, t: Array, x: Array) -> tuple[Raw, ...]:
 
 
 def hint(t: Array, x: Array) -> tuple[str, ...]:
-    """A note where there seem to be several demonstrations in what is taken for one."""
+    """A note where there seem to be several demonstrations in what is taken for one.
+
+    Of many samples, some `_LOOKED_AT` are looked at.
+    """
+    every = max(len(t) // _LOOKED_AT, 1)
+    t, x = t[::every], x[::every]
     found, _ = between_pauses(t, x)
     if len(found) < 2:
         return ()
