@@ -29,8 +29,8 @@ _LISTED = 40
 
 
 def plain_frame(name: str) -> str:
-    """A frame's name without the slash of tf's first version, and without a model's scope."""
-    return name.lstrip("/").split("::")[-1]
+    """A frame's name without the slash before it that tf's first version has."""
+    return name.lstrip("/")
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +113,11 @@ class Frames:
         """Of the frames and topics whose poses are told, or that others are seen from."""
         return tuple(dict.fromkeys([*self.topics, *(n for pair in self.tracks for n in pair if n)]))
 
+    def base(self, name: str) -> str:
+        """What the robot's base is called here, by its name in the model, which may be scoped."""
+        name = plain_frame(name)
+        return name if name in self.names else name.split("::")[-1]
+
     def has(self, name: str) -> bool:
         """Whether there is a pose of that frame or topic."""
         return self._node(name) is not None
@@ -139,7 +144,7 @@ class Frames:
                 remedy=suggestion(name, self.names, "Topics and frames"),
                 file=file,
             )
-        base = plain_frame(base)
+        base = self.base(base)
         chain = self._chain(base, node)
         if chain is None:
             raise self._no_chain(base, node, named=named, file=file)

@@ -9,7 +9,6 @@ import numpy as np
 
 from drake_screw.demonstrations import Recording
 from drake_screw.errors import RecordingError, suggestion
-from drake_screw.recordings.frames import plain_frame
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.recordings.places import Given
 from drake_screw.recordings.raw import Raw
@@ -121,7 +120,7 @@ def hand_from_base(
 
     They are left as they are, with a note, where nothing says where their frame is.
     """
-    base, frame = plain_frame(mapping.base_frame or base), raw.hand_frame
+    base, frame = raw.frames.base(mapping.base_frame or base), raw.hand_frame
     if frame in ("", base):
         return X, ()
     try:

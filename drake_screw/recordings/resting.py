@@ -22,10 +22,14 @@ MOVED = 0.02
 """m from where it stood, beyond which an object has moved; below it is jitter."""
 TURNED = 0.2
 """rad, likewise."""
+SCATTER = 3.0
+"""times the median distance from where it stood first, in the first `SPAN`: jitter, too."""
 NEAR = 0.2
 """m from the hand, within which an object may be hidden from a camera, or touched."""
 SPAN = 0.5
 """s in which most of the poses have to be elsewhere if the object has moved."""
+SOON = 5
+"""Poses in a row, most of which have to be, too, from the first on that counts."""
 JITTER = 1e-3
 """m by which half of the poses may be off without a note."""
 SAME = 1e-5
@@ -48,8 +52,8 @@ def at_rest(name: str, t: Array, X_WO: Array, hand_t: Array, p_WE: Array) -> Res
 
     The pose is the median of those before the hand came near (within `NEAR`), or if there are but
     a `FEW` of them, of all before the object moved. It has moved when most of the poses told within
-    `SPAN` are more than `MOVED` or `TURNED` from where it stood first; single ones that are
-    far off do not count.
+    `SPAN` are more than `MOVED` or `TURNED` from where it stood first, or more than `SCATTER` times
+    as far as they scatter then; single ones that are far off do not count.
 
     Args:
         name: of the object.
@@ -122,22 +126,30 @@ def _during(t: Array, end: float) -> tuple[slice, str]:
 
 def _moved(name: str, t: Array, X_WO: Array) -> tuple[int, tuple[str, ...]]:
     """How many of the poses are those before it moved, and a note if it did."""
-    first = median_pose(X_WO[t <= t[0] + SPAN])
+    begin = t <= t[0] + SPAN
+    first = median_pose(X_WO[begin])
     away = np.linalg.norm(X_WO[:, :3, 3] - first[:3, 3], axis=-1)
     turned = rotation_angle(first, X_WO)
-    off = (away > MOVED) | (turned > TURNED)
+    far, askew = (
+        max(least, SCATTER * float(np.median(each[begin])))
+        for least, each in ((MOVED, away), (TURNED, turned))
+    )
+    off = (away > far) | (turned > askew)
     until = np.searchsorted(t, t + SPAN, side="right")
     count = until - np.arange(len(t))
     total = np.append(0, np.cumsum(off))
-    most = 2 * (total[until] - total[:-1]) > count
+    soon = np.minimum(np.arange(len(t)) + SOON, until)
+    most = (2 * (total[until] - total[:-1]) > count) & (
+        2 * (total[soon] - total[:-1]) > soon - np.arange(len(t))
+    )
     often = float(np.median(np.diff(t))) < SPAN / FEW
     since = np.flatnonzero(off & most & (count >= (FEW if often else 1)))
     since = since[since > 0]
     if not len(since):
         return len(t), ()
     i = int(since[0])
-    far, turn = (
+    by, turn = (
         float(np.quantile(each[i:][off[i:]], 0.95, method="lower")) for each in (away, turned)
     )
-    how = f"moved by {far * 100:.1f} cm" if far > MOVED else f"turned by {turn:.2f} rad"
+    how = f"moved by {by * 100:.1f} cm" if by > far else f"turned by {turn:.2f} rad"
     return i, (f"the {name} {how} at {t[i]:.2f} s; its pose is the one before that",)

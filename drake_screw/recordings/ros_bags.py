@@ -25,7 +25,7 @@ from drake_screw.tables.text import Progress
 
 JOINTS = "sensor_msgs/msg/JointState"
 POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/TransformStamped")
-TREE = "tf2_msgs/msg/TFMessage"
+TREES = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 STATIC = "tf_static"
 LABELS = tuple(
     f"std_msgs/msg/{kind}"
@@ -135,7 +135,7 @@ def _cutting(kinds: dict[str, str], said: str | None, source: Path) -> str | Non
 
 
 def _is_wanted(topic: str, kind: str, chosen: str, cuts: str | None) -> bool:
-    return topic in (chosen, cuts) or kind in (*POSES, TREE)
+    return topic in (chosen, cuts) or kind in (*POSES, *TREES)
 
 
 def _stamp(message: Any, stamp: int) -> int:
@@ -171,7 +171,7 @@ class _Poses:
 
     def add(self, message: Any, stamp: int, topic: str, kind: str) -> None:
         """Add what a message tells; a PoseStamped tells of a frame called like its topic."""
-        for part in message.transforms if kind == TREE else [message]:
+        for part in message.transforms if kind in TREES else [message]:
             child = topic if kind == POSES[0] else plain_frame(part.child_frame_id)
             if kind == POSES[1]:
                 self._topics.setdefault(topic, child)

@@ -16,6 +16,8 @@ LEFT = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "
 START = 1_700_000_000.0
 """s, of the first sample."""
 
+TREES = {"tree": "tf2_msgs/msg/TFMessage", "old tree": "tf/msg/tfMessage"}
+
 Link = tuple[str, str, Array]
 """Parent frame, child frame and pose (4, 4)."""
 
@@ -25,8 +27,8 @@ def bag(path: Path, kind: str) -> Iterator[Callable[..., None]]:
     """Gives a function that writes a message to a topic at a time in s.
 
     What is written is said by a word: "joints" with names and positions, "pose" with position and
-    quaternion x, y, z, w and perhaps a frame, "transform" with a `Link`, "tree" with a list of
-    them, or a type of std_msgs with its data.
+    quaternion x, y, z, w and perhaps a frame, "transform" with a `Link`, "tree" (or
+    "old tree", of ROS 1's tf) with a list of them, or a type of std_msgs with its data.
     """
     from rosbags.rosbag1 import Writer as Writer1
     from rosbags.rosbag2 import StoragePlugin
@@ -34,9 +36,10 @@ def bag(path: Path, kind: str) -> Iterator[Callable[..., None]]:
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS1_NOETIC if kind == "bag" else Stores.ROS2_HUMBLE)
-    if "tf2_msgs/msg/TFMessage" not in store.types:
-        text = "geometry_msgs/TransformStamped[] transforms"
-        store.register(get_types_from_msg(text, "tf2_msgs/msg/TFMessage"))
+    for name in TREES.values():
+        if name not in store.types:
+            text = "geometry_msgs/TransformStamped[] transforms"
+            store.register(get_types_from_msg(text, name))
     plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
     writer = Writer1(path) if kind == "bag" else Writer2(path, version=9, storage_plugin=plugin)
     connections: dict[str, Any] = {}
@@ -68,8 +71,8 @@ def bag(path: Path, kind: str) -> Iterator[Callable[..., None]]:
             return name, T[name](header(t, *values[2:]), X)
         if what == "transform":
             return "geometry_msgs/msg/TransformStamped", transform(t, values[0])
-        if what == "tree":
-            name = "tf2_msgs/msg/TFMessage"
+        if what in TREES:
+            name = TREES[what]
             return name, T[name]([transform(t, link) for link in values[0]])
         name = f"std_msgs/msg/{what}"
         return name, T[name](values[0])

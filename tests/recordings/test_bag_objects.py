@@ -127,6 +127,20 @@ def test_a_topic_of_transforms_goes_by_its_own_name_too(setup: Setup, tmp_path: 
         assert "the only pose, at 0.00 s, seen from 'base'" in said(found)
 
 
+def test_the_first_version_of_tf_and_the_scoped_names_of_models(
+    setup: Setup, tmp_path: Path
+) -> None:
+    def fill(write: Write) -> None:
+        for i in range(3):
+            links = [("/world", "/left::base", BASE), ("/world", "/pot", BASE @ BOWL)]
+            write("/tf", START + i, "old tree", [*links, ("/world", "/right::base", CAMERA)])
+        joints(write)
+
+    found = imported(tmp_path, setup, fill, objects={"bowl": "frame:pot"}, base_frame="left::base")
+    np.testing.assert_allclose(recording(found).X_WO[0], BOWL, atol=1e-6)
+    assert "seen from 'left::base' by way of world" in said(found)
+
+
 def test_a_missing_link_is_named_with_the_frames_that_there_are(
     setup: Setup, tmp_path: Path
 ) -> None:
