@@ -58,6 +58,7 @@ def read_bag(source: Path, mapping: Mapping, progress: Progress | None = None) -
             wanted = [c for c in reader.connections if _is_wanted(c.topic, c.msgtype, topic, cuts)]
             rows: list[_Row] = []
             labels: list[tuple[int, Any]] = []
+            ahead = array("q")
             poses = _Poses()
             hand_frame = ""
             begin, length = reader.start_time, max(reader.duration, 1)
@@ -65,6 +66,7 @@ def read_bag(source: Path, mapping: Mapping, progress: Progress | None = None) -
                 message = reader.deserialize(raw, connection.msgtype)
                 if connection.topic == topic:
                     rows.append(_row(message, stamp, connection.msgtype))
+                    ahead.append(rows[-1][0] - stamp)
                     hand_frame = hand_frame or plain_frame(message.header.frame_id)
                 elif connection.topic == cuts:
                     labels.append((stamp, message.data))
@@ -82,7 +84,9 @@ def read_bag(source: Path, mapping: Mapping, progress: Progress | None = None) -
     told = {"time": "time", "time_unit": "s", "topic": topic}
     said: dict[str, Labels] = {}
     if cuts:
-        t = np.array([(stamp - first) * 1e-9 for stamp, _ in labels])
+        # These have no header: on the clock of the motion's by what that is ahead of the bag's.
+        shift = int(np.median(ahead)) - first
+        t = np.array([(stamp + shift) * 1e-9 for stamp, _ in labels])
         said[cuts] = Labels(t, tuple(value for _, value in labels))
     return (
         Raw(

@@ -23,12 +23,13 @@ Link = tuple[str, str, Array]
 
 
 @contextmanager
-def bag(path: Path, kind: str) -> Iterator[Callable[..., None]]:
+def bag(path: Path, kind: str, ahead: int = 0) -> Iterator[Callable[..., None]]:
     """Gives a function that writes a message to a topic at a time in s.
 
     What is written is said by a word: "joints" with names and positions, "pose" with position and
     quaternion x, y, z, w and perhaps a frame, "transform" with a `Link`, "tree" (or
-    "old tree", of ROS 1's tf) with a list of them, or a type of std_msgs with its data.
+    "old tree", of ROS 1's tf) with a list of them, or a type of std_msgs with its data. Headers
+    are `ahead` s of the bag's own clock.
     """
     from rosbags.rosbag1 import Writer as Writer1
     from rosbags.rosbag2 import StoragePlugin
@@ -46,7 +47,7 @@ def bag(path: Path, kind: str) -> Iterator[Callable[..., None]]:
     T = store.types
 
     def header(t: float, frame: str = "base") -> Any:
-        stamp = T["builtin_interfaces/msg/Time"](int(t), round(t % 1 * 1e9))
+        stamp = T["builtin_interfaces/msg/Time"](int(t) + ahead, round(t % 1 * 1e9))
         extra = {"seq": 0} if kind == "bag" else {}
         return T["std_msgs/msg/Header"](stamp=stamp, frame_id=frame, **extra)
 
