@@ -61,6 +61,14 @@ def import_(
     rate: Annotated[
         float | None, typer.Option(metavar="HZ", help="Of samples without a time.", min=1e-9)
     ] = None,
+    episodes: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WHAT",
+            help="Cuts a file that holds several demonstrations: pauses, a bag's topic, or a "
+            "column.",
+        ),
+    ] = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what is understood, and write nothing.")
     ] = False,
@@ -84,7 +92,9 @@ def import_(
 
     objects = parse_objects(object_ or [])
     said = read_mapping(mapping) if mapping else Mapping()
-    said = said.with_(format=format, rate=rate, objects={**said.objects, **objects} or None)
+    said = said.with_(
+        format=format, rate=rate, episodes=episodes, objects={**said.objects, **objects} or None
+    )
     setup = Setup(chosen_scenario(scenario, set_, model))
     out = Output()
     with _progress(out) as progress:

@@ -159,7 +159,8 @@ def checked(
         raise fail(
             row + 1,
             f"{t[row + 1] - t[row]:.2f} s are missing, in which the arm moved",
-            "Record again: what the arm did in the gap cannot be known.",
+            "Record again: what the arm did in the gap cannot be known. If several demonstrations "
+            "are in the file, drake-screw import cuts it, with episodes: pauses in recording.yaml.",
         )
     left = _any_joint(q, _beyond, q[0] - STILL, q[0] + STILL)
     stays = ~_any_joint(q, _beyond, q[-1] - STILL, q[-1] + STILL)

@@ -48,6 +48,14 @@ class Mapping(Block):
     """order of the quaternion's columns"""
     lengths: Literal["m", "cm", "mm"] | None = None
     """unit of hand positions and of joints that slide"""
+    episodes: Annotated[str, Field(min_length=1)] | None = None
+    """what cuts a file into recordings: pauses, a bag's topic, or a column"""
+    pause: Annotated[float, Field(gt=0, strict=False)] | None = None
+    """s, the least length of a pause that cuts; 2 if it is not said"""
+    still: Annotated[float, Field(gt=0, strict=False)] | None = None
+    """rad or m, by which the arm may move in a pause; 0.01 if it is not said"""
+    base_frame: str | None = None
+    """what a bag calls the frame of the robot's base"""
     objects: dict[str, Place_] = Field(default={})
     """where each object was: [x, y], [x, y, yaw], a 4 x 4 matrix, or a text as --object takes"""
 

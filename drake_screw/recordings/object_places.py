@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,25 +12,44 @@ from drake_screw.errors import RecordingError, suggestion
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.recordings.places import Given
 from drake_screw.recordings.raw import Raw
+from drake_screw.recordings.resting import Resting, at_rest
 from drake_screw.robot import Arm
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
 
 
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """Where the objects were.
+
+    Attributes:
+        X_WO: (k, 4, 4); the identity where it is not known.
+        said: how each was found, in words.
+        missing: names of those that were not.
+        notes: what is to be noted of them.
+    """
+
+    X_WO: Array
+    said: tuple[str, ...]
+    missing: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
 def objects_of(
-    raw: Raw, mapping: Mapping, arm: Arm, area: WorkArea, draft: Recording
-) -> tuple[Array, list[str], list[str]]:
-    """X_WO (k, 4, 4), how each was found, and the names of those that were not.
+    raw: Raw, mapping: Mapping, arm: Arm, area: WorkArea, base: str, draft: Recording
+) -> Placed:
+    """Where the objects were: as said, as the file has it, or as the scenario fixes it.
 
     Args:
         raw: that may hold poses.
         mapping: that may say places.
         arm: that was led.
         area: with the k objects.
+        base: the frame that poses are seen from.
         draft: the motion.
 
     Raises:
-        RecordingError: a place is none, or of no object.
+        RecordingError: a place is none, or of no object; a frame cannot be seen from the base.
     """
     names = [item.name for item in area.objects]
     for name in mapping.objects:
@@ -51,14 +71,26 @@ def objects_of(
             )
         return _path(draft, arm, np.array([np.argmin(np.abs(t - time))]))[0]
 
+    def watched(object_name: str, frame: str) -> Resting:
+        seen = raw.frames.seen(
+            frame, mapping.base_frame or base, named=bool(mapping.base_frame), file=raw.table.file
+        )
+        rows = np.flatnonzero(np.isfinite(t) & np.isfinite(draft.q).all(axis=1))
+        p_WE = _path(draft, arm, rows)[:, :3, 3]
+        found = at_rest(object_name, seen.t - raw.begin, seen.X, t[rows], p_WE)
+        return replace(found, how=f"{found.how}, {seen.how}")
+
     X_WO, said, missing = [], [], []
+    notes: list[str] = []
     for i, item in enumerate(area.objects):
         pose, how = np.eye(4), f"not said yet; say it with --object {item.name}=x,y"
         place = mapping.objects.get(item.name)
         source = re.fullmatch(r"(topic|frame):(.+)", place) if isinstance(place, str) else None
-        if source:
-            pose, how = _of_bag(raw, source.group(2)), f"first pose of {place}"
-            how += f", seen from '{raw.frames.get(source.group(2), '')}'"
+        if source or (item.name not in mapping.objects and raw.frames.has(item.name)):
+            frame = source.group(2) if source else item.name
+            found = watched(item.name, frame)
+            pose, how = found.X, f"by {place or f'frame:{frame}'}: {found.how}"
+            notes.extend(found.notes)
         elif item.name in mapping.objects:
             given = Given(item.name, mapping.objects[item.name])
             pose, how = given.pose(float(area.z[i]), hand)
@@ -72,21 +104,28 @@ def objects_of(
         where = f"({x:.3f}, {y:.3f}, {z:.3f}) m, " if item.name not in missing else ""
         X_WO.append(pose)
         said.append(f"{item.name} {where}{how}")
-    return np.array(X_WO), said, missing
-
-
-def _of_bag(raw: Raw, name: str) -> Array:
-    """The pose of a topic or frame."""
-    if name not in raw.X_WO:
-        raise RecordingError(
-            f"no topic or frame '{name}' with poses",
-            remedy=suggestion(name, raw.X_WO, "Topics and frames"),
-            file=raw.table.file,
-        )
-    return raw.X_WO[name]
+    return Placed(np.array(X_WO), tuple(said), tuple(missing), tuple(notes))
 
 
 def _path(recording: Recording, arm: Arm, rows: Array) -> Array:
     """X_WE of some samples."""
     X_WE = recording.X_WE
     return arm.pose(recording.q[rows]) if X_WE is None else X_WE[rows]
+
+
+def hand_from_base(
+    raw: Raw, mapping: Mapping, base: str, t: Array, X: Array
+) -> tuple[Array, tuple[str, ...]]:
+    """Hand poses X (m, 4, 4) at times t (m,) seen from the robot's base, and a note if need be.
+
+    They are left as they are, with a note, where nothing says where their frame is.
+    """
+    base, frame = raw.frames.base(mapping.base_frame or base), raw.hand_frame
+    if frame in ("", base):
+        return X, ()
+    try:
+        X_BF = raw.frames.between(base, frame, t + raw.begin)
+    except LookupError:
+        note = f"the hand's poses are seen from '{frame}'; that is taken for the robot's base "
+        return X, (note + f"'{base}', since no transforms lead from there to it",)
+    return X_BF @ X, (f"the hand's poses were seen from '{frame}', and are from '{base}' now",)

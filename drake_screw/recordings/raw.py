@@ -10,8 +10,20 @@ from collections.abc import Mapping as Dict
 from dataclasses import dataclass, field
 from typing import Any
 
+from drake_screw.recordings.frames import Frames
 from drake_screw.tables import Table
 from drake_screw.typing import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Labels:
+    """What was said over time beside the motion: `values` (m,), each from its time `t` (m,) on.
+
+    Times are in s on the clock of the recording's table.
+    """
+
+    t: Array
+    values: tuple[Any, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +36,10 @@ class Raw:
         told: keys of a `Mapping` that the format itself states; the user's own go before them.
         X_WO: poses (4, 4) of objects that the format holds, by their names there.
         notes: what was left out, in words.
-        frames: that these poses are seen from, where the format says so.
+        frames: poses over time that the format holds.
+        labels: what `Mapping.episodes` may name beside columns.
+        hand_frame: what the table's hand poses are seen from, where the format says so.
+        begin: s, the time of the table's first row on the clock of frames and labels.
     """
 
     name: str
@@ -32,4 +47,7 @@ class Raw:
     told: Dict[str, Any] = field(default_factory=dict)
     X_WO: Dict[str, Array] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
-    frames: Dict[str, str] = field(default_factory=dict)
+    frames: Frames = field(default_factory=Frames)
+    labels: Dict[str, Labels] = field(default_factory=dict)
+    hand_frame: str = ""
+    begin: float = 0.0

@@ -11,7 +11,7 @@ from drake_screw.errors import RecordingError
 from drake_screw.plugins import choices, find, is_known
 from drake_screw.recordings.mapping import FILE, Mapping, read_mapping
 from drake_screw.recordings.text_formats import is_rostopic
-from drake_screw.recordings.understanding import Robot, Understood, understand
+from drake_screw.recordings.understanding import Robot, Understood, episodes_of, understand
 from drake_screw.tables.text import Progress
 from drake_screw.typing import PathLike
 
@@ -68,8 +68,9 @@ def read_recordings(
             raise RecordingError(f"no format '{format}'", remedy=choices("sources", format))
         raws = find("sources", format)(file, said, progress(file) if progress else None)
         found.extend(
-            understand(raw, said, robot, format=format, objects_needed=objects_needed)
+            understand(part, said, robot, format=format, objects_needed=objects_needed)
             for raw in raws
+            for part in episodes_of(raw, said, robot)
         )
     for name, count in Counter(each.name for each in found).items():
         if count > 1:

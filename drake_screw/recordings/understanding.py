@@ -15,10 +15,11 @@ from drake_screw.demonstrations.recording import CLAMPED_WITHIN, GAP, checked
 from drake_screw.demonstrations.turns import whole_turns
 from drake_screw.errors import RecordingError, suggestion
 from drake_screw.recordings.ends import of_ranges
+from drake_screw.recordings.episodes import coordinates, episodes, hint
 from drake_screw.recordings.hand_columns import hand_columns, hand_path, reached
 from drake_screw.recordings.joint_columns import Matched, match_joints
 from drake_screw.recordings.mapping import FILE, Mapping
-from drake_screw.recordings.object_places import objects_of
+from drake_screw.recordings.object_places import hand_from_base, objects_of
 from drake_screw.recordings.places import FORMS
 from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.time_column import Time, time_of
@@ -92,22 +93,25 @@ def understand(
     if not len(table):
         raise RecordingError("no rows", remedy="Record it again.", file=table.file)
     time = time_of(table, mapping)
-    motion = _motion(table, mapping, robot, time)
+    motion = _motion(raw, mapping, robot, time)
     draft = Recording(
         raw.name, motion.joints, time.t, motion.q, np.tile(np.eye(4), (len(robot.names), 1, 1)),
-        notes=raw.notes, source=None if table.file is None else table.file.resolve(),
-        X_WE=motion.X_WE,
+        notes=(*raw.notes, *motion.notes), X_WE=motion.X_WE,
+        source=None if table.file is None else table.file.resolve(),
     )  # fmt: skip
-    X_WO, places, missing = objects_of(raw, mapping, robot.arm, robot.area, draft)
-    if missing and objects_needed:
+    placed = objects_of(raw, mapping, robot.arm, robot.area, robot.base, draft)
+    if placed.missing and objects_needed:
+        name = placed.missing[0]
         raise RecordingError(
-            f"where was the {missing[0]}? The file does not say",
-            remedy=f"Say it with --object {missing[0]}=x,y, or in {FILE} under objects. {FORMS}",
+            f"where was the {name}? The file does not say",
+            remedy=f"Say it with --object {name}=x,y, or in {FILE} under objects. {FORMS}",
             file=table.file,
         )
     found = _checked(draft, table, robot)
-    if not missing:
-        found = replace(found, X_WO=X_WO)
+    several = hint(time.t, motion.coordinates) if mapping.episodes is None else ()
+    found = replace(found, notes=(*found.notes, *placed.notes, *several))
+    if not placed.missing:
+        found = replace(found, X_WO=placed.X_WO)
         notes = check_objects(found, robot.arm, robot.names, robot.base, file=table.file)
         found = replace(found, notes=(*found.notes, *notes))
     said = mapping.with_(
@@ -121,10 +125,10 @@ def understand(
         ("time", time.said),
         *motion.facts,
         ("gaps", _gaps(time.t)),
-        *(("object", line) for line in places),
+        *(("object", line) for line in placed.said),
         *(("note", note) for note in found.notes),
     )
-    return Understood(None if missing else found, raw.name, facts, said)
+    return Understood(None if placed.missing else found, raw.name, facts, said)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,15 +140,35 @@ class _Motion:
     X_WE: Array | None
     keys: dict[str, Any]
     facts: tuple[tuple[str, str], ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def coordinates(self) -> Array:
+        """What moves, as `episodes.coordinates` has it."""
+        return coordinates(self.q, self.X_WE)
 
 
-def _motion(table: Table, mapping: Mapping, robot: Robot, time: Time) -> _Motion:
+def episodes_of(raw: Raw, mapping: Mapping, robot: Robot) -> tuple[Raw, ...]:
+    """The recordings that one file holds, where its mapping says that it is to be cut.
+
+    Raises:
+        RecordingError: something cannot be told, or there is nothing to cut it by.
+    """
+    if mapping.episodes is None or not len(raw.table):
+        return (raw,)
+    mapping = mapping.with_told(dict(raw.told))
+    time = time_of(raw.table, mapping)
+    motion = _motion(raw, mapping, robot, time)
+    return episodes(raw, mapping, time.t, motion.coordinates)
+
+
+def _motion(raw: Raw, mapping: Mapping, robot: Robot, time: Time) -> _Motion:
     """The joints' motion where there are joints, else the hand's.
 
     Raises:
         RecordingError: there is neither.
     """
-    arm = robot.arm
+    arm, table = robot.arm, raw.table
     matched = None if mapping.hand else _joints(table, mapping, arm, time)
     hand = hand_columns(table, mapping) if matched is None else None
     if matched is None and hand is None:
@@ -157,12 +181,13 @@ def _motion(table: Table, mapping: Mapping, robot: Robot, time: Time) -> _Motion
             line=table.header,
         )
     if matched is None and hand is not None:
-        X_WE, unit = hand_path(table, hand, mapping), mapping.lengths or "m"
+        X_FE, unit = hand_path(table, hand, mapping), mapping.lengths or "m"
+        X_WE, notes = hand_from_base(raw, mapping, robot.base, time.t, X_FE)
         keys: dict[str, Any] = {"hand": hand.columns, "lengths": unit}
         if hand.order != "matrix":
             keys["quaternion"] = hand.order
         facts = (("hand", hand.how), ("arm", reached(arm, X_WE, time.t)))
-        return _Motion((), np.zeros((len(table), 0)), X_WE, keys, facts)
+        return _Motion((), np.zeros((len(table), 0)), X_WE, keys, facts, notes)
     assert matched is not None
     q, angles, lengths, said = _angles(table, matched, mapping, robot)
     listed = f"{matched.how}: {', '.join(matched.columns)}"

@@ -112,3 +112,28 @@ def test_other_verbs_take_files_to_which_nothing_has_to_be_added(
     code, out, _ = command("look", folder)
     assert code == 0
     assert "of the bowl" in out
+
+
+def test_a_file_with_two_demonstrations_is_cut_at_the_pause(command: Command, log: Path) -> None:
+    header, *lines = log.read_text().splitlines()
+    end = float(lines[-1].split("\t")[0])
+    again = [line.split("\t") for line in lines]
+    shifted = [f"{float(row[0]) + end + 3000.0:.3f}\t" + "\t".join(row[1:]) for row in again]
+    log.write_text("\n".join([header, *lines, *shifted]))
+    at = ("--object", "bowl=0.8,0.1")
+    code, _, err = command("import", log, "--output", "mine", *at)
+    assert code == 2
+    assert "with episodes: pauses in recording.yaml" in err
+    code, out, _ = command("import", log, "--dry-run", "--episodes", "pauses", *at)
+    assert code == 0
+    assert "is 2 of 2 in the file, from " in out
+    assert "episodes: pauses" in out
+    code, out, _ = command("import", log, "--output", "mine", "--episodes", "pauses", *at)
+    assert code == 0
+    assert sorted(each.name for each in Path("mine").iterdir()) == ["log_01", "log_02"]
+    first, second = (Path("mine") / name / "joint_angles.csv" for name in ("log_01", "log_02"))
+    assert len(first.read_text().splitlines()) == len(second.read_text().splitlines())
+    code, _, err = command("import", log, "--dry-run", "--episodes", "pause", *at)
+    assert code == 2
+    assert "episodes: no column 'pause'" in err
+    assert "Did you mean 'pauses'?" in err

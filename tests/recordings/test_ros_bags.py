@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,59 +10,14 @@ import pytest
 from drake_screw import RecordingError, Setup, load_scenario
 from drake_screw.assembly.importing import read_recordings
 from drake_screw.recordings import Mapping
+from tests.recordings.bags import LEFT, bag, motion
 
 pytest.importorskip("rosbags")
-LEFT = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
 
 
 @pytest.fixture(scope="module")
 def setup() -> Setup:
     return Setup(load_scenario("pouring"))
-
-
-@contextmanager
-def bag(path: Path, kind: str) -> Iterator[Any]:
-    """Gives a function that writes a message of a type to a topic, at a time in s."""
-    from rosbags.rosbag1 import Writer as Writer1
-    from rosbags.rosbag2 import StoragePlugin
-    from rosbags.rosbag2 import Writer as Writer2
-    from rosbags.typesys import Stores, get_typestore
-
-    store = get_typestore(Stores.ROS1_NOETIC if kind == "bag" else Stores.ROS2_HUMBLE)
-    plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
-    writer = Writer1(path) if kind == "bag" else Writer2(path, version=9, storage_plugin=plugin)
-    connections: dict[str, Any] = {}
-    T = store.types
-
-    def header(t: float, frame: str = "base") -> Any:
-        stamp = T["builtin_interfaces/msg/Time"](int(t), round(t % 1 * 1e9))
-        extra = {"seq": 0} if kind == "bag" else {}
-        return T["std_msgs/msg/Header"](stamp=stamp, frame_id=frame, **extra)
-
-    with writer:
-
-        def write(topic: str, t: float, what: str, *values: Any) -> None:
-            if what == "joints":
-                name = "sensor_msgs/msg/JointState"
-                empty = np.zeros(0)
-                message = T[name](header(t), list(values[0]), np.array(values[1]), empty, empty)
-            else:
-                name = "geometry_msgs/msg/PoseStamped"
-                p = T["geometry_msgs/msg/Point"](*values[0])
-                q = T["geometry_msgs/msg/Quaternion"](*values[1])
-                message = T[name](header(t), T["geometry_msgs/msg/Pose"](p, q))
-            if topic not in connections:
-                connections[topic] = writer.add_connection(topic, name, typestore=store)
-            raw = store.serialize_ros1 if kind == "bag" else store.serialize_cdr
-            writer.write(connections[topic], round(t * 1e9), raw(message, name))
-
-        yield write
-
-
-def motion() -> tuple[np.ndarray, np.ndarray]:
-    q = np.tile([0.5, -0.2, -0.7, 1.5, 1.8, -0.9, -0.5], (50, 1))
-    q[:, 0] += 0.01 * np.arange(50)
-    return 1_700_000_000.0 + 0.05 * np.arange(50), q
 
 
 @pytest.mark.parametrize("kind", ["bag", "db3", "mcap"])
