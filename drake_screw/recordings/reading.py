@@ -66,12 +66,15 @@ def read_recordings(
         format = said.format or _format(file)
         if not is_known("sources", format):
             raise RecordingError(f"no format '{format}'", remedy=choices("sources", format))
-        raws = find("sources", format)(file, said, progress(file) if progress else None)
-        found.extend(
-            understand(part, said, robot, format=format, objects_needed=objects_needed)
-            for raw in raws
-            for part in episodes_of(raw, said, robot)
-        )
+        raws = list(find("sources", format)(file, said, progress(file) if progress else None))
+        while raws:  # one at a time, so that a long one is let go of when it is understood
+            parts = list(episodes_of(raws.pop(0), said, robot))
+            while parts:
+                found.append(
+                    understand(
+                        parts.pop(0), said, robot, format=format, objects_needed=objects_needed
+                    )
+                )
     for name, count in Counter(each.name for each in found).items():
         if count > 1:
             raise RecordingError(

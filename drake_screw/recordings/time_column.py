@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from drake_screw.demonstrations.recording import GAP
 from drake_screw.errors import RecordingError
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.tables import Table
@@ -112,3 +113,18 @@ def _column(table: Table) -> str | tuple[str, str] | None:
             if re.match(pattern, name, re.IGNORECASE):
                 return name
     return None
+
+
+def rate_in_words(t: Array) -> str:
+    """Of samples at t (m,) s."""
+    moving = np.diff(t)[np.diff(t) > 0.0]
+    return f"about {1.0 / np.median(moving):.4g} Hz" if len(moving) else "of unknown rate"
+
+
+def gaps_in_words(t: Array) -> str:
+    """Steps between samples at t (m,) s that are longer than GAP."""
+    steps = np.diff(t)
+    long = np.flatnonzero(steps > GAP)
+    if not len(long):
+        return f"none; the longest step is {steps.max(initial=0.0):.3f} s"
+    return f"{len(long)} of more than {GAP:g} s, the first at {t[long[0]]:.2f} s"

@@ -11,7 +11,7 @@ import numpy as np
 from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.hand_eye import check_objects
 from drake_screw.demonstrations.hand_poses import checked_hand
-from drake_screw.demonstrations.recording import CLAMPED_WITHIN, GAP, checked
+from drake_screw.demonstrations.recording import CLAMPED_WITHIN, checked
 from drake_screw.demonstrations.turns import whole_turns
 from drake_screw.errors import RecordingError, suggestion
 from drake_screw.recordings.ends import of_ranges
@@ -22,7 +22,7 @@ from drake_screw.recordings.mapping import FILE, Mapping
 from drake_screw.recordings.object_places import hand_from_base, objects_of
 from drake_screw.recordings.places import FORMS
 from drake_screw.recordings.raw import Raw
-from drake_screw.recordings.time_column import Time, time_of
+from drake_screw.recordings.time_column import Time, gaps_in_words, rate_in_words, time_of
 from drake_screw.robot import Arm
 from drake_screw.screws.endless import TURN
 from drake_screw.tables import Table
@@ -100,11 +100,13 @@ def understand(
         source=None if table.file is None else table.file.resolve(),
     )  # fmt: skip
     placed = objects_of(raw, mapping, robot.arm, robot.area, robot.base, draft)
+    name, table = raw.name, table.without_columns()
+    del raw  # of a long recording the columns take most of the room
     if placed.missing and objects_needed:
-        name = placed.missing[0]
+        lost = placed.missing[0]
         raise RecordingError(
-            f"where was the {name}? The file does not say",
-            remedy=f"Say it with --object {name}=x,y, or in {FILE} under objects. {FORMS}",
+            f"where was the {lost}? The file does not say",
+            remedy=f"Say it with --object {lost}=x,y, or in {FILE} under objects. {FORMS}",
             file=table.file,
         )
     found = _checked(draft, table, robot)
@@ -121,14 +123,14 @@ def understand(
     )
     facts = (
         ("format", f"{format}, {table.about}" if table.about else format),
-        ("rows", f"{len(table):,}, {found.duration:.2f} s of motion, {_rate(time.t)}"),
+        ("rows", f"{len(table):,}, {found.duration:.2f} s of motion, {rate_in_words(time.t)}"),
         ("time", time.said),
         *motion.facts,
-        ("gaps", _gaps(time.t)),
+        ("gaps", gaps_in_words(time.t)),
         *(("object", line) for line in placed.said),
         *(("note", note) for note in found.notes),
     )
-    return Understood(None if placed.missing else found, raw.name, facts, said)
+    return Understood(None if placed.missing else found, name, facts, said)
 
 
 @dataclass(frozen=True, eq=False)
@@ -287,16 +289,3 @@ def _told(raw: Array, turns: Array, columns: Sequence[str], arm: Arm) -> tuple[s
     if np.abs(finite[:, turns]).max() > TURN and within(degrees):
         return "deg", "beyond a whole turn as radians, within the arm's limits as degrees"
     return "rad", "taken for granted"
-
-
-def _rate(t: Array) -> str:
-    moving = np.diff(t)[np.diff(t) > 0.0]
-    return f"about {1.0 / np.median(moving):.4g} Hz" if len(moving) else "of unknown rate"
-
-
-def _gaps(t: Array) -> str:
-    steps = np.diff(t)
-    long = np.flatnonzero(steps > GAP)
-    if not len(long):
-        return f"none; the longest step is {steps.max(initial=0.0):.3f} s"
-    return f"{len(long)} of more than {GAP:g} s, the first at {t[long[0]]:.2f} s"

@@ -49,6 +49,10 @@ class Table:
     def __len__(self) -> int:
         return len(self.lines)
 
+    def without_columns(self) -> Table:
+        """Where its rows are, and no more."""
+        return replace(self, columns={})
+
     def numbers(self, name: str) -> Array:
         """A column (m,) as numbers.
 

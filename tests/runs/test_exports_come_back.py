@@ -98,7 +98,7 @@ def test_a_bag_comes_back_with_its_objects(
     same_motion(found.recording, timed, timed.sampled(PERIOD)[0], 1e-9)
     want = setup.area.X_WO(np.array([[PLACE]]))[0]
     np.testing.assert_allclose(found.recording.X_WO, want, atol=1e-9)
-    assert "from the file" in dict(found.facts)["object"]
+    assert "by frame:bowl" in dict(found.facts)["object"]
 
 
 def test_a_dataset_comes_back_with_its_objects(
