@@ -246,7 +246,9 @@ def _angles(
 ) -> tuple[Array, str, str | None, str]:
     """Joint positions (m, n) in rad and m, their units, and how these were recognised."""
     arm = robot.arm
-    raw = np.stack([table.numbers(name) for name in matched.columns], axis=1)
+    raw = np.empty((len(table), arm.n))
+    for j, name in enumerate(matched.columns):
+        raw[:, j] = table.numbers(name)
     turns = np.array([unit == "rad" for unit in arm.units])
     if mapping.angles == "percent":
         q, said = of_ranges(raw, arm, mapping.ends, table.file)

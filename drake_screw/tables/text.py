@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from drake_screw.errors import RecordingError
 from drake_screw.tables.dialect import SPACE, Dialect, cells_of, check_width, dialect_of
+from drake_screw.tables.rows import Blocks, Columns, Rows, RowsInMemory
 from drake_screw.tables.table import Table
 from drake_screw.typing import Array, PathLike
 
@@ -30,6 +31,8 @@ ROWS = 20_000
 """Of a block that is read cell by cell."""
 HEAD = 1 << 16
 """bytes, from which the dialect is told."""
+LARGE = 1 << 25
+"""bytes of a file whose numbers are kept on disk until they are asked for."""
 
 
 def read_table(
@@ -68,10 +71,7 @@ def read_table(
         header = None if dialect.names is None else dialect.header
         if values is not None:
             lines = dialect.skip + 1 + np.arange(len(values))
-            columns: dict[str, NDArray[Any]] = {}
-            for i, name in enumerate(names):
-                columns.setdefault(name, values[:, i])
-            return Table(columns, lines, file, header, str(dialect))
+            return Table(Columns(names, values), lines, file, header, str(dialect))
         columns, lines = _cells(file, dialect, names, say)
     except FileNotFoundError as error:
         raise RecordingError("no such file", file=file, remedy=remedy) from error
@@ -87,15 +87,16 @@ def _head(stream: BinaryIO) -> list[str]:
     return whole.decode("utf-8-sig").replace("\r\n", "\n").splitlines(keepends=True)
 
 
-def _numbers(stream: BinaryIO, dialect: Dialect, size: int, say: Progress) -> Array | None:
-    """All numbers (m, c); None where there is something else, too, or lines are blank."""
+def _numbers(stream: BinaryIO, dialect: Dialect, size: int, say: Progress) -> Rows | None:
+    """All numbers, in rows; None where there is something else, too, or lines are blank."""
     if not dialect.width:
         return None
+    found: Rows = Blocks(dialect.width) if size > LARGE else RowsInMemory(dialect.width)
     stream.seek(0)
     for _ in range(dialect.skip):
         stream.readline()
     spaces = _to_spaces(dialect)
-    found, count, rest = np.zeros((0, dialect.width)), 0, b""
+    rest = b""
     while True:
         read = stream.read(BLOCK)
         block = rest + read
@@ -110,29 +111,12 @@ def _numbers(stream: BinaryIO, dialect: Dialect, size: int, say: Progress) -> Ar
             values = _block(block, dialect, spaces)
             if values is None:
                 return None
-            found = _with_room(found, count + len(values), stream.tell() / max(size, 1))
-            found[count : count + len(values)] = values
-            count += len(values)
+            found.add(values)
         elif read:
             return None
         say(min(stream.tell() / max(size, 1), 1.0))
         if not read:
-            return found[:count]
-
-
-def _with_room(found: Array, rows: int, part: float) -> Array:
-    """The same array with room for so many rows, and for as many as the rest will have.
-
-    Args:
-        found: (m, c).
-        rows: that it has to hold.
-        part: of the file that they are.
-    """
-    if rows <= len(found):
-        return found
-    larger = np.empty((max(rows, int(1.02 * rows / max(part, 0.01))), found.shape[1]))
-    larger[: len(found)] = found
-    return larger
+            return found
 
 
 def _to_spaces(dialect: Dialect) -> bytes:
