@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+
 from tests.commands.conftest import QUICK
 
 
+@pytest.mark.slow
 def test_report_draws_again(command) -> None:
     command("run", "pouring", *QUICK, "--output", "here")
     for file in [*Path("here").rglob("*.png"), Path("here/meshcat.html")]:

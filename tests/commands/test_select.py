@@ -100,7 +100,7 @@ def test_a_recording_of_which_nothing_is_kept_is_named(
 @pytest.mark.parametrize(
     ("args", "words"),
     [
-        (["--demonstrations", "nowhere"], "no such folder"),
+        (["--demonstrations", "nowhere"], "no such file or folder"),
         (["--demonstrations", "."], "no recordings here"),
         (["--demonstrations", ".", "--set", "coverage.epsilon=0.2"], "epsilon"),
         (["--demonstrations", ".", "--json", "nowhere/found.json"], "there is no folder"),

@@ -72,7 +72,7 @@ EVALUATE = ["evaluate", "pouring", "--demonstrations", "nowhere"]
         (["run", "pouring", "--set", "objects.0.x=[3.0, 4.0]"], "out of reach"),
         (["run", "pouring", "--set", "robot.start.1=1.5"], "outside its limits"),
         (["run", "pouring", "--model", "nothing.sdf"], "nothing.sdf"),
-        (["run", "pouring", "--demonstrations", "nowhere"], "no such folder"),
+        (["run", "pouring", "--demonstrations", "nowhere"], "no such file or folder"),
         (["run", "pouring", "--set", "coverage.options.rope=1"], "rope"),
         (["run"], "no scenario"),
         (["run", "--resume", "nowhere"], "not a run directory"),

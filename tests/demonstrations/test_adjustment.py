@@ -52,6 +52,7 @@ def test_poses_on_screws_are_sclerp() -> None:
     np.testing.assert_allclose(pose(rotation_from_quaternion(q), p), expected, atol=1e-12)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=20)
 @given(st.integers(0, 2**32 - 1))
 def test_guiding_poses_find_back_to_screws_that_were_shown(seed: int) -> None:

@@ -58,6 +58,7 @@ def test_logs_come_back_thinned_out_with_both_ends(executed) -> None:
     assert len(t) == len(executed[0].q) < 200
 
 
+@pytest.mark.slow
 def test_other_processes_answer_the_same(config, plan, executed) -> None:
     jobs = [Job(plan, X_WO)] * 2
     for execution in execute_all(config, jobs, workers=2):

@@ -144,6 +144,7 @@ def test_agrees_with_the_reference_on_a_small_arm(
     assert np.mean(same) >= 0.95
 
 
+@pytest.mark.slow
 def test_fraction_is_how_far_the_reference_comes(
     seven: Arm, lessons: tuple[Demonstration, ...], places: np.ndarray, answers: Outcomes
 ) -> None:

@@ -74,6 +74,7 @@ def start(screw: float, **environment: str) -> tuple[bool, bool, int, Path]:
     return before == "True", after == "True", int(loaded), Path(file)
 
 
+@pytest.mark.slow
 def test_the_second_process_loads_what_the_first_compiled(tmp_path: Path) -> None:
     where = {"XDG_CACHE_HOME": str(tmp_path)}
     assert start(-0.25, **where) == (False, True, 0, file := next(tmp_path.glob("*/arm_*.py")))

@@ -60,7 +60,10 @@ def case_of(arm: Arm, q: np.ndarray, axis, middle, spread, seed: int = 3) -> Cas
     return Case(arm, q, axis, tuple(lessons), places)
 
 
-@pytest.fixture(scope="module", params=["seven z", "five z", "five oblique"])
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param("seven z", marks=pytest.mark.slow), "five z", "five oblique"],
+)
 def case(request, seven: Arm) -> Case:
     if request.param == "seven z":
         return case_of(seven, REACHING, Z, MIDDLE, np.array([0.25, 0.25, 0.6]))

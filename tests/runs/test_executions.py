@@ -75,6 +75,7 @@ def test_the_runs_own_files_stay_as_they_are(run, executed) -> None:
     assert all(name.startswith("executions/") for name in after.keys() - before.keys())
 
 
+@pytest.mark.slow
 def test_fresh_instances_are_drawn_until_enough_are_executed(run, executed) -> None:
     """The one demonstration does not solve the whole area; what it does not is told."""
     text = str(execute(run, per_region=1, workers=1))

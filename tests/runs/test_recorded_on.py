@@ -227,7 +227,9 @@ def test_plans_are_executed_and_exported_with_the_own_arm(finished: Path, tmp_pa
     assert "iiwa_joint_7" in (tmp_path / "plan.yaml").read_text()
     with pytest.raises(ScenarioError, match="baxter-csv is for Baxter, which has no joint") as e:
         write_trajectory(finished, place, "baxter-csv", tmp_path / "plan.csv")
-    assert e.value.remedy == "Give --format ros-trajectory or --format npz."
+    assert e.value.remedy is not None
+    assert "--format ros-trajectory or " in e.value.remedy
+    assert "baxter-csv" not in e.value.remedy
     assert not (tmp_path / "plan.csv").exists()
 
 
@@ -343,6 +345,7 @@ def test_a_block_that_cannot_be_used_is_refused(block: str, message: str) -> Non
     assert message in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_simulated_teacher_of_the_iiwa_leads_to_a_certificate(tmp_path: Path) -> None:
     scenario = load_scenario("pouring_iiwa", QUICK)
     assert "none yet" in str(preview(scenario))

@@ -385,7 +385,7 @@ def test_input_that_cannot_be_used(library: Path, tmp_path: Path) -> None:
     scenario = load_scenario("pouring")
     with pytest.raises(DrakeScrewError, match="0 instances"):
         select(scenario, library, instances=0)
-    with pytest.raises(RecordingError, match="no such folder"):
+    with pytest.raises(RecordingError, match="no such file or folder"):
         select(scenario, tmp_path / "nowhere")
     with pytest.raises(RecordingError, match="no recordings here"):
         select(scenario, tmp_path)

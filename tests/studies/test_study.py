@@ -143,6 +143,7 @@ def test_what_a_study_leaves(finished) -> None:
     assert not list(finished.path.glob(".*.part"))
 
 
+@pytest.mark.slow
 def test_an_interrupted_study_resumes_to_the_same_result(scenario, finished, tmp_path) -> None:
     path = tmp_path / "parts"
     running = new_study(scenario, REGIONS, COUNT, path).carry_out(1)
