@@ -22,7 +22,7 @@ from drake_screw.planning.swept.motion import (
 )
 from drake_screw.planning.swept.separation import BAND
 
-FINEST = 1e-4
+FINEST = 1e-5
 """m, of travel to either side of a configuration: stretches as short as that are not halved. So
 much deeper than at the configurations looked at may shapes touch unnoticed."""
 
