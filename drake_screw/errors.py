@@ -7,7 +7,8 @@ print ``str(error)`` alone. Failing to find a plan is a value (`planning.Outcome
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from drake_screw.typing import PathLike
@@ -62,6 +63,24 @@ class RunDirectoryError(DrakeScrewError):
 
 class PluginError(DrakeScrewError):
     """A strategy, motion, teacher or format that is named in text and cannot be found."""
+
+
+@contextmanager
+def extra(
+    name: str, message: str, raises: type[DrakeScrewError], file: PathLike | None = None
+) -> Iterator[None]:
+    """Where something cannot be imported within, an error that says which extra to install.
+
+    Args:
+        name: of the extra.
+        message: what is needed, and what for.
+        raises: the error's class.
+        file: that it is needed for.
+    """
+    try:
+        yield
+    except ImportError as error:
+        raise raises(message, remedy=f"pip install 'drake-screw[{name}]'", file=file) from error
 
 
 def counted(count: int, noun: str) -> str:

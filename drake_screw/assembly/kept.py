@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from drake_screw.acquisition import RecordedTeacher
 from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.why_not import why_not
-from drake_screw.demonstrations import NoMotionKept, Recording
+from drake_screw.demonstrations import Look, Recording
 from drake_screw.errors import counted
 
 
@@ -32,21 +32,19 @@ def kept(setup: Setup, recordings: Sequence[Recording]) -> tuple[str, ...]:
     rad``. Where the arm cannot do from its start what was shown, objects standing as they did, the
     line ends with the first segment that it cannot follow.
     """
-    return tuple(f"{setup.look(r)}{_cannot_follow(setup, r)}" for r in recordings)
+    looks = map(setup.look, recordings)
+    return tuple(f"{look}{_cannot_follow(setup, look)}" for look in looks)
 
 
-def _cannot_follow(setup: Setup, recording: Recording) -> str:
+def _cannot_follow(setup: Setup, look: Look) -> str:
     """What the arm cannot follow of a recording where it was shown, as the end of a sentence."""
-    try:
-        demonstration = setup.learn(recording)
-    except NoMotionKept:
+    demonstration, start = look.demonstration, setup.workcell.start
+    if demonstration is None:
         return ""
-    X_WO = setup.recorder_of(recording.robot).seen(recording)
-    start = setup.workcell.start
-    outcomes = setup.planner.all_outcomes([demonstration], X_WO[None], start)
+    outcomes = setup.planner.all_outcomes([demonstration], look.X_WO[None], start)
     if outcomes.success[0, 0]:
         return ""
-    why = why_not(outcomes[0], [demonstration], X_WO, start, setup.careful_planner)
+    why = why_not(outcomes[0], [demonstration], look.X_WO, start, setup.careful_planner)
     why = why.removeprefix(f"with {demonstration.name}, ")
     segments = counted(len(demonstration.objects), "segment")
     return f"; not planned where it was shown, of {segments}: {why}"

@@ -36,7 +36,7 @@ from drake_screw.robot import (
     Workcell,
     build_workcell,
 )
-from drake_screw.robot.ignored import srdf_of
+from drake_screw.robot.srdf import srdf_of
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, WorkArea
 
@@ -90,7 +90,7 @@ class PlanningSetup:
             file = error.file or self.scenario.source
             raise ModelError(error.message, remedy=error.remedy, file=file) from error
         check_shapes(self.scenario, workcell)
-        check_start(self.scenario, workcell.arm)
+        check_start(self.scenario, workcell)
         check_start_is_free(self.scenario, workcell)
         check_reach(self.scenario, workcell.arm, self.area)
         return workcell

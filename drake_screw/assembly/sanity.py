@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from drake_screw.assembly.workcell_parts import robot_config
 from drake_screw.errors import ScenarioError
 from drake_screw.robot import Arm, ScrewChain, Workcell
 from drake_screw.robot.hand import angle_between, out_of_the_hand
@@ -47,13 +46,14 @@ class Covered:
         )
 
 
-def check_start(scenario: Scenario, arm: Arm) -> None:
+def check_start(scenario: Scenario, workcell: Workcell) -> None:
     """Check that the start configuration is strictly inside the joint limits.
 
     Raises:
         ScenarioError: it is not.
     """
-    start, chain = np.array(robot_config(scenario).start), kept_within(scenario, arm)
+    arm, start = workcell.arm, workcell.start
+    chain = kept_within(scenario, arm)
     margin = chain.margin(start)
     if (margin <= 0.0).any():
         i = int(np.argmin(margin))

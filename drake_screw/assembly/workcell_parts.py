@@ -16,8 +16,8 @@ from drake_screw.robot import (
     TableConfig,
     ToolConfig,
 )
-from drake_screw.robot.ignored import start_state
 from drake_screw.robot.parts import turned_frame
+from drake_screw.robot.srdf import start_state
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.tasks import ObjectArea, WorkArea
@@ -30,12 +30,12 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         ModelError: it starts in a state of an SRDF file that does not have it.
     """
     block = scenario.robot
-    named = isinstance(block.start, str)
+    start = block.start
     robot = RobotConfig(
         str(block.model),
         block.joints,
         block.end_effector,
-        () if isinstance(block.start, str) else block.start,
+        () if isinstance(start, str) else start,
         block.base,
         block.parked,
         tool_config(scenario),
@@ -46,7 +46,7 @@ def robot_config(scenario: Scenario) -> RobotConfig:
         xacro=block.xacro,
         srdf=block.srdf,
     )
-    return replace(robot, start=start_state(robot, str(block.start))) if named else robot
+    return replace(robot, start=start_state(robot, start)) if isinstance(start, str) else robot
 
 
 def tool_config(scenario: Scenario) -> ToolConfig | None:

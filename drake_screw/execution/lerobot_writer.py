@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from drake_screw.errors import PluginError
+from drake_screw.errors import PluginError, extra
 from drake_screw.execution.setting import NOWHERE, PERIOD, Setting
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.recordings.mapping import FILE, Mapping
@@ -30,13 +30,9 @@ def lerobot(plan: TimedPlan, arm: Arm, setting: Setting = NOWHERE) -> dict[str, 
     Raises:
         PluginError: pyarrow is not installed.
     """
-    try:
+    with extra("lerobot", "the export format lerobot needs pyarrow", PluginError):
         import pyarrow as pa
         import pyarrow.parquet as pq
-    except ImportError as error:
-        raise PluginError(
-            "the export format lerobot needs pyarrow", remedy="pip install 'drake-screw[lerobot]'"
-        ) from error
     frames = _frames(plan)
     columns = {
         name: pa.FixedSizeListArray.from_arrays(values.ravel(), arm.n)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from drake_screw.errors import PluginError
+from drake_screw.errors import PluginError, extra
 from drake_screw.execution.ros_text import nanoseconds
 from drake_screw.execution.setting import NOWHERE, PERIOD, Setting
 from drake_screw.execution.timing import TimedPlan
@@ -33,13 +33,9 @@ def ros2_bag(plan: TimedPlan, arm: Arm, setting: Setting = NOWHERE) -> dict[str,
     Raises:
         PluginError: rosbags is not installed.
     """
-    try:
+    with extra("ros", "the export format ros2-bag needs rosbags", PluginError):
         from rosbags.rosbag2 import StoragePlugin, Writer
         from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise PluginError(
-            "the export format ros2-bag needs rosbags", remedy="pip install 'drake-screw[ros]'"
-        ) from error
     store = get_typestore(Stores.ROS2_HUMBLE)
     t, q, v = plan.sampled(PERIOD)
     with tempfile.TemporaryDirectory() as folder:

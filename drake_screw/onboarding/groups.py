@@ -11,9 +11,8 @@ from drake_screw.errors import ModelError
 from drake_screw.onboarding.arms import LEAST, FoundArm, arm_of, find_arms
 from drake_screw.onboarding.joint_tree import JointTree
 from drake_screw.onboarding.reading import Robot
-from drake_screw.robot.ignored import srdf_with
 from drake_screw.robot.names import called
-from drake_screw.robot.srdf import Group
+from drake_screw.robot.srdf import Group, srdf_with
 
 
 def arms_by_name(robot: Robot) -> tuple[FoundArm, ...]:

@@ -44,8 +44,7 @@ def parked(robot: Robot, arm: FoundArm, others: Sequence[FoundArm]) -> dict[str,
     if len(drives) <= DRIVES:
         rest |= _opened(robot, arm, rest)
     for other in others:
-        if not set(other.joints) & set(arm.joints):
-            rest |= _tucked(robot, arm, other, rest)
+        rest |= _tucked(robot, arm, other, rest)
     return {name: round(value, DIGITS) + 0.0 for name, value in rest.items()}
 
 

@@ -14,6 +14,7 @@ from drake_screw.onboarding.reading import Robot
 from drake_screw.onboarding.rectangles import Rectangle
 from drake_screw.robot import ScrewChain, TableConfig
 from drake_screw.robot.names import find_frame
+from drake_screw.robot.shapes import vertices
 from drake_screw.typing import Array
 
 LOW_SHOULDER = 0.6
@@ -63,8 +64,7 @@ def _corners(inspector: SceneGraphInspector, shape: GeometryId) -> Array:
     """(m, 3) m, points whose hull holds a shape, in its own frame."""
     solid = inspector.GetShape(shape)
     if isinstance(solid, Mesh | Convex):
-        hull = solid.GetConvexHull()
-        return np.array([hull.vertex(i) for i in range(hull.num_vertices())])
+        return vertices(solid.GetConvexHull())
     box = inspector.GetObbInGeometryFrame(shape)
     if box is None:
         return np.zeros((0, 3))

@@ -89,7 +89,7 @@ def by_labels(t: Array, labels: Labels) -> list[Episode]:
 
 
 def episodes(raw: Raw, mapping: Mapping, t: Array, x: Array) -> tuple[Raw, ...]:
-    """The recordings that a file holds, as its mapping says; it itself where that says nothing.
+    """The recordings that a file holds, as its mapping says.
 
     Each is called like the file with a number behind it, and has a note of when it was.
 
@@ -102,8 +102,7 @@ def episodes(raw: Raw, mapping: Mapping, t: Array, x: Array) -> tuple[Raw, ...]:
     Raises:
         RecordingError: there is nothing of that name to cut by, or no motion.
     """
-    if mapping.episodes is None:
-        return (raw,)
+    assert mapping.episodes is not None
     still = mapping.still or STANDING
     if mapping.episodes == PAUSES:
         pause = mapping.pause or PAUSE

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from drake_screw.errors import RecordingError
+from drake_screw.errors import RecordingError, extra
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.recordings.raw import Raw
 from drake_screw.tables.table import from_arrays
@@ -30,15 +30,9 @@ def read_lerobot(
     Raises:
         RecordingError: pyarrow is not installed, it is no such dataset, or `angles` is not said.
     """
-    try:
+    with extra("lerobot", "LeRobot's datasets need pyarrow", RecordingError, source):
         import pyarrow as pa
         import pyarrow.parquet as pq
-    except ImportError as error:
-        raise RecordingError(
-            "LeRobot's datasets need pyarrow",
-            remedy="pip install 'drake-screw[lerobot]'",
-            file=source,
-        ) from error
     info = _info(source)
     if mapping.angles is None and mapping.hand is None:
         raise RecordingError(

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from drake_screw.errors import RecordingError
+from drake_screw.errors import RecordingError, extra
 from drake_screw.recordings.mapping import Mapping
 from drake_screw.recordings.raw import Raw
 from drake_screw.screws import pose, rotation_from_quaternion
@@ -31,12 +31,8 @@ def read_hdf5(source: Path, mapping: Mapping, progress: Progress | None = None) 
     Raises:
         RecordingError: h5py is not installed, or it is no such file.
     """
-    try:
+    with extra("hdf5", "HDF5 needs h5py", RecordingError, source):
         import h5py
-    except ImportError as error:
-        raise RecordingError(
-            "HDF5 needs h5py", remedy="pip install 'drake-screw[hdf5]'", file=source
-        ) from error
     try:
         with h5py.File(source, "r") as file:
             if "data" not in file:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from drake_screw.errors import RecordingError, suggestion
+from drake_screw.errors import RecordingError, extra, suggestion
 from drake_screw.recordings.episodes import PAUSES
 from drake_screw.recordings.frames import Frames, Track, plain_frame
 from drake_screw.recordings.mapping import Mapping
@@ -42,13 +42,9 @@ def read_bag(source: Path, mapping: Mapping, progress: Progress | None = None) -
     Raises:
         RecordingError: rosbags is not installed, it is no bag, or it has no such topic, or several.
     """
-    try:
+    with extra("ros", "bags need rosbags", RecordingError, source):
         from rosbags.highlevel import AnyReader, AnyReaderError
         from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise RecordingError(
-            "bags need rosbags", remedy="pip install 'drake-screw[ros]'", file=source
-        ) from error
     bag = source.parent if source.suffix in (".db3", ".mcap") and _described(source) else source
     try:
         with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:

@@ -16,6 +16,9 @@ from drake_screw.robot.packages import Packages, split_address
 DRAKE_S_OWN = ("drake", "drake_models")
 """Packages that Drake brings or would fetch, whose models need no looking after."""
 
+CONFIG, UNNAMED = "model.config", "model.sdf"
+"""In a model's folder: what names its file, and the file where nothing does."""
+
 _ADDRESS = re.compile(r"(?:package|model)://[^\s\"'<>,\]}]+")
 
 
@@ -62,8 +65,22 @@ def _included(drake: PackageMap, address: str, model: Path, packages: Packages) 
     if split[0] in DRAKE_S_OWN:
         return None
     path = Path(drake.GetPath(split[0])) / split[1]
-    path = path / "model.sdf" if path.is_dir() else path
-    return path if path.is_file() else None
+    return model_at(path)
+
+
+def model_at(path: Path) -> Path | None:
+    """A model's file, by itself or by its folder, as an SDF includes either; None if there is none.
+
+    In a folder `CONFIG` says which it is. Of several versions Drake takes the last one that it
+    knows, and it knows all that are written.
+    """
+    if path.is_file():
+        return path
+    named: list[str] = []
+    with suppress(OSError, ET.ParseError):
+        named = [e.text.strip() for e in ET.parse(path / CONFIG).getroot().iter("sdf") if e.text]
+    models = [path / name for name in (UNNAMED, *named) if (path / name).is_file()]
+    return models[-1] if models else None
 
 
 def addresses(file: Path) -> tuple[list[str], list[str]]:

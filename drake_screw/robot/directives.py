@@ -15,6 +15,11 @@ from drake_screw.errors import ModelError
 SUFFIX = ".dmd.yaml"
 
 
+def is_directives(file: Path) -> bool:
+    """Whether a file is one of Drake's model directives, by its name."""
+    return file.name.endswith(SUFFIX)
+
+
 def model_files(file: Path, packages: PackageMap) -> tuple[tuple[str | None, Path], ...]:
     """The files of the models that a model file adds, and what each is called.
 
@@ -24,7 +29,7 @@ def model_files(file: Path, packages: PackageMap) -> tuple[tuple[str | None, Pat
     Raises:
         ModelError: directives cannot be read, or name a file or package that there is not.
     """
-    if not file.name.endswith(SUFFIX):
+    if not is_directives(file):
         return ((None, file),)
     try:
         flat = FlattenModelDirectives(LoadModelDirectives(str(file)), packages)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from pydrake.geometry import SceneGraph
 from pydrake.multibody.plant import MultibodyPlant
@@ -11,9 +10,8 @@ from pydrake.multibody.tree import BodyIndex, ModelInstanceIndex
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.names import called, find_body, scoped
-from drake_screw.robot.packages import ModelPlace, Packages
 from drake_screw.robot.parts import RobotConfig
-from drake_screw.robot.srdf import Srdf, read_srdf, srdf_file, state_positions
+from drake_screw.robot.srdf import srdf_with
 from drake_screw.robot.tool import leave_out
 
 KEY = "robot.ignore_collisions"
@@ -80,41 +78,6 @@ def let_links_touch(
     return tuple(lacking)
 
 
-def srdf_of(robot: RobotConfig) -> Path | None:
-    """The file of a robot's SRDF, if it has one.
-
-    Raises:
-        ModelError: it cannot be found.
-    """
-    return None if robot.srdf is None else srdf_file(robot.srdf, _packages(robot))
-
-
-def srdf_with(robot: RobotConfig) -> Srdf | None:
-    """A robot's SRDF, if it has one.
-
-    Raises:
-        ModelError: it cannot be found or read.
-    """
-    file = srdf_of(robot)
-    return None if file is None else read_srdf(file, _packages(robot))
-
-
-def start_state(robot: RobotConfig, name: str) -> tuple[float, ...]:
-    """Angles of the arm's joints in a state of the robot's SRDF.
-
-    Raises:
-        ModelError: there is no SRDF, or it lacks the state or a joint of it.
-    """
-    srdf = srdf_with(robot)
-    if srdf is None:
-        raise ModelError(f"there is no SRDF file with a state '{name}'", file=robot.model)
-    return state_positions(srdf, name, robot.joints)
-
-
 def remedy_for(pairs: Sequence[Pair]) -> str:
     """The lines of a scenario that let pairs touch."""
     return f"ignore_collisions: [{', '.join(f'[{a}, {b}]' for a, b in pairs)}]"
-
-
-def _packages(robot: RobotConfig) -> Packages:
-    return ModelPlace(robot.model, robot.packages).packages

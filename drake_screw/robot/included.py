@@ -12,12 +12,10 @@ from typing import Protocol, TypeVar
 from pydrake.multibody.parsing import LoadModelDirectives, PackageMap
 
 from drake_screw.errors import ModelError
-from drake_screw.robot.directives import SUFFIX, directives_error
+from drake_screw.robot.addresses import model_at
+from drake_screw.robot.directives import directives_error
 from drake_screw.robot.model_meshes import address_of, set_address
 from drake_screw.robot.packages import Packages
-
-CONFIG = "model.config"
-"""Names the model in a folder that an SDF includes."""
 
 
 class _Mended(Protocol):
@@ -52,7 +50,7 @@ def mend_includes(
             continue
         file = None
         with suppress(ModelError):
-            file = _in_folder(packages.path(address, folder))
+            file = model_at(packages.path(address, folder))
         if file is None:
             continue
         mended = mend(file)
@@ -93,20 +91,3 @@ def mend_directives(
             whole = rf"(?<![^\s'\"]){re.escape(address)}(?![^\s'\",}}])"
             text = re.sub(whole, mended.read.as_uri().replace("\\", r"\\"), text)
     return text, list(found.values())
-
-
-def is_directives(file: Path) -> bool:
-    """Whether a file is one of Drake's model directives, by its name."""
-    return file.name.endswith(SUFFIX)
-
-
-def _in_folder(file: Path) -> Path | None:
-    """A model's file, by itself or by its folder; None if there is none."""
-    if file.is_file():
-        return file
-    named: list[str] = []
-    with suppress(OSError, ET.ParseError):
-        named = [e.text.strip() for e in ET.parse(file / CONFIG).getroot().iter("sdf") if e.text]
-    # Of several versions Drake takes the last one that it knows; it knows all that are written.
-    models = [file / name for name in named if (file / name).is_file()]
-    return models[-1] if models else None

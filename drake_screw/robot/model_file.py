@@ -15,7 +15,8 @@ from pydrake.multibody.parsing import PackageMap
 from drake_screw.errors import ModelError
 from drake_screw.files import cache_folder, file_hash, write_text
 from drake_screw.robot.addresses import add_packages
-from drake_screw.robot.included import is_directives, mend_directives, mend_includes
+from drake_screw.robot.directives import is_directives
+from drake_screw.robot.included import mend_directives, mend_includes
 from drake_screw.robot.model_limits import check_joint_limits
 from drake_screw.robot.model_materials import mend_materials
 from drake_screw.robot.model_meshes import LeftOut, MeshesRead, make_absolute, read_meshes

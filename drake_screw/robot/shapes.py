@@ -6,7 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from pydrake.geometry import Box, Convex, Cylinder, Shape, Sphere
+from pydrake.geometry import (
+    Box,
+    Convex,
+    Cylinder,
+    PolygonSurfaceMesh,
+    Shape,
+    Sphere,
+    TriangleSurfaceMesh,
+)
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import RigidBody
@@ -115,8 +123,13 @@ class PlacedShape:
                 p_GP = np.concatenate(rings)
             case MeshShape(file, scale):
                 hull = _hull(file, scale).GetConvexHull()
-                p_GP = np.array([hull.vertex(i) for i in range(hull.num_vertices())])
+                p_GP = vertices(hull)
         return np.asarray(self.X_FG.multiply(p_GP.T)).T
+
+
+def vertices(surface: PolygonSurfaceMesh | TriangleSurfaceMesh) -> Array:
+    """The vertices (v, 3) of one of Drake's surfaces."""
+    return np.array([surface.vertex(i) for i in range(surface.num_vertices())])
 
 
 def register(

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 from drake_screw.errors import ModelError, suggestion
 from drake_screw.robot.model_xml import parse_model
-from drake_screw.robot.packages import Packages, split_address
+from drake_screw.robot.packages import ModelPlace, Packages, split_address
+from drake_screw.robot.parts import RobotConfig
 from drake_screw.robot.xacro_text import SUFFIX, expand
 
 
@@ -145,6 +146,41 @@ def state_positions(srdf: Srdf, name: str, joints: Sequence[str]) -> tuple[float
             )
         found[joint] = next(iter(values))
     return tuple(found[joint] for joint in joints)
+
+
+def srdf_of(robot: RobotConfig) -> Path | None:
+    """The file of a robot's SRDF, if it has one.
+
+    Raises:
+        ModelError: it cannot be found.
+    """
+    return None if robot.srdf is None else srdf_file(robot.srdf, _packages(robot))
+
+
+def srdf_with(robot: RobotConfig) -> Srdf | None:
+    """A robot's SRDF, if it has one.
+
+    Raises:
+        ModelError: it cannot be found or read.
+    """
+    file = srdf_of(robot)
+    return None if file is None else read_srdf(file, _packages(robot))
+
+
+def start_state(robot: RobotConfig, name: str) -> tuple[float, ...]:
+    """Angles of the arm's joints in a state of the robot's SRDF.
+
+    Raises:
+        ModelError: there is no SRDF, or it lacks the state or a joint of it.
+    """
+    srdf = srdf_with(robot)
+    if srdf is None:
+        raise ModelError(f"there is no SRDF file with a state '{name}'", file=robot.model)
+    return state_positions(srdf, name, robot.joints)
+
+
+def _packages(robot: RobotConfig) -> Packages:
+    return ModelPlace(robot.model, robot.packages).packages
 
 
 def _pairs(root: ET.Element) -> Iterator[IgnoredPair]:

@@ -3,75 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from tempfile import TemporaryFile
-from typing import Protocol
+from io import SEEK_END
+from itertools import pairwise
+from tempfile import SpooledTemporaryFile
 
 import numpy as np
 
 from drake_screw.typing import Array
 
 
-class Rows(Protocol):
-    """Rows of so many numbers."""
+class Rows:
+    """Rows, a block at a time; a block's columns lie one after the other.
 
-    def __len__(self) -> int: ...
-
-    def add(self, values: Array) -> None:
-        """Takes more rows (m, width)."""
-
-    def column(self, j: int) -> Array:
-        """Column j of all rows."""
-
-
-class RowsInMemory:
-    """Rows kept as they come."""
-
-    def __init__(self, width: int) -> None:
-        self._parts = [np.zeros((0, width))]
-
-    def __len__(self) -> int:
-        return sum(map(len, self._parts))
-
-    def add(self, values: Array) -> None:
-        """See `Rows`."""
-        self._parts.append(values)
-
-    def column(self, j: int) -> Array:
-        """See `Rows`."""
-        return np.concatenate([part[:, j] for part in self._parts])
-
-
-class Blocks:
-    """Rows in a temporary file, a block at a time; a block's columns lie one after the other.
+    Args:
+        width: numbers in a row.
+        most: bytes that are kept in memory; with more, all are in a temporary file.
 
     Raises:
         OSError: there is no room on the disk for temporary files.
     """
 
-    def __init__(self, width: int) -> None:
+    def __init__(self, width: int, most: int) -> None:
         self._width, self._ends = width, [0]
-        self._file = TemporaryFile(buffering=0)  # noqa: SIM115 - open as long as the rows are
+        self._file = SpooledTemporaryFile(most)  # noqa: SIM115 - open as long as the rows are
 
     def __len__(self) -> int:
         return self._ends[-1]
 
     def add(self, values: Array) -> None:
-        """See `Rows`."""
-        if not len(values):
-            return
-        left = np.ascontiguousarray(values.T).data.cast("B")
-        while left:
-            left = left[self._file.write(left) or 0 :]
+        """Takes more rows (m, width)."""
+        self._file.seek(0, SEEK_END)
+        self._file.write(np.ascontiguousarray(values.T).tobytes())
         self._ends.append(len(self) + len(values))
 
     def column(self, j: int) -> Array:
-        """See `Rows`."""
+        """Column j (m,) of all rows."""
         found = np.empty(len(self))
-        for begin, end in zip(self._ends[:-1], self._ends[1:], strict=True):
+        for begin, end in pairwise(self._ends):
             self._file.seek(8 * (self._width * begin + j * (end - begin)))
-            left = found[begin:end].data.cast("B")
-            while left:
-                left = left[self._file.readinto(left) or 0 :]
+            self._file.readinto(found[begin:end].data)
         return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +42,7 @@ class Table:
         """Of the columns, in the file's order."""
         return tuple(self.columns)
 
-    @property
+    @cached_property
     def numeric(self) -> tuple[str, ...]:
         """Names of the columns in which every cell is a number."""
         return tuple(name for name, column in self.columns.items() if column.dtype.kind == "f")

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from drake_screw.errors import RecordingError
 from drake_screw.tables.dialect import SPACE, Dialect, cells_of, check_width, dialect_of
-from drake_screw.tables.rows import Blocks, Columns, Rows, RowsInMemory
+from drake_screw.tables.rows import Columns, Rows
 from drake_screw.tables.table import Table
 from drake_screw.typing import Array, PathLike
 
@@ -32,7 +32,7 @@ ROWS = 20_000
 HEAD = 1 << 16
 """bytes, from which the dialect is told."""
 LARGE = 1 << 25
-"""bytes of a file whose numbers are kept on disk until they are asked for."""
+"""bytes of numbers, with more of which they are kept on disk until they are asked for."""
 
 
 def read_table(
@@ -91,7 +91,7 @@ def _numbers(stream: BinaryIO, dialect: Dialect, size: int, say: Progress) -> Ro
     """All numbers, in rows; None where there is something else, too, or lines are blank."""
     if not dialect.width:
         return None
-    found: Rows = Blocks(dialect.width) if size > LARGE else RowsInMemory(dialect.width)
+    found = Rows(dialect.width, LARGE)
     stream.seek(0)
     for _ in range(dialect.skip):
         stream.readline()

@@ -6,12 +6,21 @@ from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydrake.geometry import FrameId, Meshcat, ReadObjToTriangleSurfaceMesh, Role, SceneGraph, Shape
+from pydrake.geometry import (
+    FrameId,
+    GeometryId,
+    Meshcat,
+    ReadObjToTriangleSurfaceMesh,
+    Role,
+    SceneGraph,
+    Shape,
+)
 from pydrake.geometry import Mesh as MeshShape
 from pydrake.multibody.tree import BodyIndex
 from scipy.spatial import ConvexHull
 
 from drake_screw.robot import Arm, Workcell
+from drake_screw.robot.shapes import vertices
 from drake_screw.typing import Array
 from drake_screw.visualization.drawing import draw, rgba
 from drake_screw.visualization.meshes import Mesh
@@ -38,6 +47,7 @@ class Linkage:
         self._graph: SceneGraph = graph
         self._plant, self._named = plant, workcell.name
         self._context = plant.CreateDefaultContext()
+        self._bare: dict[GeometryId, Mesh | None] = {}
         inspector = graph.model_inspector()
         first = self.arm.joints[0].index()
         moved = [
@@ -123,7 +133,9 @@ class Linkage:
         for geometry in looks or inspector.GetGeometries(frame, Role.kProximity):
             place = f"{path}/{inspector.GetName(geometry).replace('::', '/')}"
             shape = inspector.GetShape(geometry)
-            bare = _without_looks(shape)
+            if geometry not in self._bare:
+                self._bare[geometry] = _without_looks(shape)
+            bare = self._bare[geometry]
             if bare is None:
                 meshcat.SetObject(place, shape, rgba(color, opacity))
             else:
@@ -144,12 +156,11 @@ def _without_looks(shape: Shape) -> Mesh | None:
         if b"mtllib" not in path.read_bytes():
             return None
         surface = ReadObjToTriangleSurfaceMesh(path, shape.scale3())
-        corners = np.array([surface.vertex(i) for i in range(surface.num_vertices())])
+        corners = vertices(surface)
         faces = [
             [surface.element(f).vertex(k) for k in range(3)] for f in range(surface.num_triangles())
         ]
     else:
-        hull = shape.GetConvexHull()
-        corners = np.array([hull.vertex(i) for i in range(hull.num_vertices())])
+        corners = vertices(shape.GetConvexHull())
         faces = ConvexHull(corners).simplices
     return Mesh(corners, np.asarray(faces, dtype=np.int32))

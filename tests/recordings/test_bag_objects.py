@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw import RecordingError, Setup
 from drake_screw.assembly.importing import read_recordings
 from drake_screw.demonstrations import Recording
 from drake_screw.recordings import Mapping, Understood
@@ -29,11 +29,6 @@ BOWL = pose(rotation_from_quaternion([0.97, 0.0, 0.0, 0.24]), [0.8, 0.5, -0.1])
 CAMERA = pose(rotation_from_quaternion([0.3, -0.8, 0.4, 0.1]), [0.3, -0.2, 1.1])
 MARKER = pose(rotation_from_quaternion([0.5, 0.5, -0.5, 0.5]), [0.05, 0.02, -0.03])
 BASE = pose(rotation_from_quaternion([0.9, 0.1, 0.0, -0.2]), [1.0, 2.0, 0.8])
-
-
-@pytest.fixture(scope="module")
-def setup() -> Setup:
-    return Setup(load_scenario("pouring"))
 
 
 def joints(write: Write) -> None:
@@ -223,6 +218,12 @@ def test_jitter_is_no_motion_and_gives_its_median(setup: Setup, tmp_path: Path) 
     assert "moved" not in note
 
 
+def stood_at_first(found: Understood, note: str) -> None:
+    """The bowl is taken to be where it was before what a note says."""
+    np.testing.assert_allclose(recording(found).X_WO[0], BOWL, atol=1e-6)
+    assert recording(found).notes == (f"{note}; its pose is the one before that",)
+
+
 def test_an_object_that_moves_is_where_it_was_before(setup: Setup, tmp_path: Path) -> None:
     def fill(write: Write) -> None:
         for i in range(49):
@@ -231,10 +232,7 @@ def test_an_object_that_moves_is_where_it_was_before(setup: Setup, tmp_path: Pat
         joints(write)
 
     found = imported(tmp_path, setup, fill, objects={"bowl": "topic:/bowl"})
-    np.testing.assert_allclose(recording(found).X_WO[0], BOWL, atol=1e-6)
-    assert recording(found).notes == (
-        "the bowl moved by 12.0 cm at 1.60 s; its pose is the one before that",
-    )
+    stood_at_first(found, "the bowl moved by 12.0 cm at 1.60 s")
     assert "the median of 32 poses before it moved" in said(found)
 
 
@@ -246,10 +244,7 @@ def test_an_object_told_of_only_when_it_changes(setup: Setup, tmp_path: Path) ->
         joints(write)
 
     found = imported(tmp_path, setup, fill, objects={"bowl": "topic:/bowl"})
-    np.testing.assert_allclose(recording(found).X_WO[0], BOWL, atol=1e-6)
-    assert recording(found).notes == (
-        "the bowl turned by 0.40 rad at 2.00 s; its pose is the one before that",
-    )
+    stood_at_first(found, "the bowl turned by 0.40 rad at 2.00 s")
     assert "the only pose before it moved" in said(found)
 
 

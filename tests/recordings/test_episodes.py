@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw import RecordingError, Setup
 from drake_screw.assembly.importing import read_recordings
 from drake_screw.recordings import Mapping, Understood
 from drake_screw.recordings.episodes import Episode, between_pauses, by_labels
@@ -18,11 +18,6 @@ from tests.recordings.bags import LEFT, START, bag
 
 REST = np.array([0.5, -0.2, -0.7, 1.5, 1.8, -0.9, -0.5])
 BOWL = {"bowl": (0.8, 0.5)}
-
-
-@pytest.fixture(scope="module")
-def setup() -> Setup:
-    return Setup(load_scenario("pouring"))
 
 
 def three() -> tuple[Array, Array]:

@@ -8,18 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw import RecordingError, Setup
 from drake_screw.assembly.importing import read_recordings
 from drake_screw.recordings import Mapping
 
 pa = pytest.importorskip("pyarrow")
 LEFT = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
 NEAR = Mapping(objects={"bowl": (0.8, 0.5)})
-
-
-@pytest.fixture(scope="module")
-def setup() -> Setup:
-    return Setup(load_scenario("pouring"))
 
 
 def dataset(folder: Path, files: list[list[int]], ends: np.ndarray | None = None) -> np.ndarray:

@@ -8,17 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw import RecordingError, Setup
 from drake_screw.assembly.importing import read_recordings
 from drake_screw.demonstrations import Recording
 from drake_screw.recordings import Mapping
 
 h5py = pytest.importorskip("h5py")
-
-
-@pytest.fixture(scope="module")
-def setup() -> Setup:
-    return Setup(load_scenario("pouring"))
 
 
 def test_episodes_come_in_with_their_objects(setup: Setup, tmp_path: Path) -> None:

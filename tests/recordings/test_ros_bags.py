@@ -7,17 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw import RecordingError, Setup
 from drake_screw.assembly.importing import read_recordings
 from drake_screw.recordings import Mapping
 from tests.recordings.bags import LEFT, bag, motion
 
 pytest.importorskip("rosbags")
-
-
-@pytest.fixture(scope="module")
-def setup() -> Setup:
-    return Setup(load_scenario("pouring"))
 
 
 @pytest.mark.parametrize("kind", ["bag", "db3", "mcap"])

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw import RecordingError, Setup
 from drake_screw.assembly.importing import read_recordings, write_library
 from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.look_summary import summarized
@@ -19,16 +19,6 @@ from drake_screw.screws import quaternion_from_rotation
 
 LEFT = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
 PANDA = tuple(f"panda_joint{i}" for i in range(1, 8))
-
-
-@pytest.fixture(scope="module")
-def setup() -> Setup:
-    return Setup(load_scenario("pouring"))
-
-
-@pytest.fixture(scope="module")
-def demo(setup: Setup, shared: Path) -> Recording:
-    return setup.recorder.read(shared / "demos" / "pouring" / "demo_01")
 
 
 def table(names: list[str], columns: list[list[str]], separator: str = ",", quote: str = "") -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import Setup, load_scenario
+from drake_screw import Setup
 from drake_screw.assembly.importing import read_recordings
 from drake_screw.demonstrations import Recording
 from drake_screw.recordings import Mapping
@@ -17,16 +17,6 @@ from drake_screw.screws import quaternion_from_rotation
 from tests.recordings.bags import LEFT, START, bag
 
 SHUFFLED = [4, 1, 6, 0, 2, 5, 3]
-
-
-@pytest.fixture(scope="module")
-def setup() -> Setup:
-    return Setup(load_scenario("pouring"))
-
-
-@pytest.fixture(scope="module")
-def demo(setup: Setup, shared: Path) -> Recording:
-    return setup.recorder.read(shared / "demos" / "pouring" / "demo_01")
 
 
 def as_bag(kind: str) -> Callable[[Path, Recording], Mapping]:

@@ -7,15 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import RecordingError, Setup, load_scenario
+from drake_screw import RecordingError, Setup
 from drake_screw.demonstrations import Recording
 
 LEFT = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
-
-
-@pytest.fixture(scope="module")
-def setup() -> Setup:
-    return Setup(load_scenario("pouring"))
 
 
 def base(m: int = 12) -> tuple[np.ndarray, np.ndarray]:

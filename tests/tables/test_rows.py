@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from drake_screw.errors import RecordingError
-from drake_screw.tables import rows, text
-from drake_screw.tables.rows import Blocks, Columns, RowsInMemory
+from drake_screw.tables import text
+from drake_screw.tables.rows import Columns, Rows
 from drake_screw.tables.text import read_table
 
 
-@pytest.mark.parametrize("kind", [Blocks, RowsInMemory])
-def test_columns_are_those_of_the_rows(kind) -> None:
+@pytest.mark.parametrize("most", [1, 10_000, 1 << 20])
+def test_columns_are_those_of_the_rows(most: int) -> None:
     values = np.random.default_rng(0).normal(size=(1000, 5))
-    kept = kind(5)
+    kept = Rows(5, most)
     for part in np.split(values, [0, 1, 400, 999]):
         kept.add(part)
     assert len(kept) == 1000
@@ -30,7 +31,7 @@ def test_columns_are_those_of_the_rows(kind) -> None:
 
 
 def test_without_rows_columns_are_empty() -> None:
-    for kept in (Blocks(2), RowsInMemory(2)):
+    for kept in (Rows(2, 1), Rows(2, 1 << 20)):
         assert len(kept) == 0
         assert kept.column(1).shape == (0,)
 
@@ -71,6 +72,6 @@ def test_no_room_on_the_disk_is_told(file: Path, monkeypatch: pytest.MonkeyPatch
     def full(**_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(rows, "TemporaryFile", full)
+    monkeypatch.setattr(tempfile, "TemporaryFile", full)
     with pytest.raises(RecordingError, match=r"cannot be read: .*No space left"):
         read_table(file)

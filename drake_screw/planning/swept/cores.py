@@ -23,6 +23,7 @@ from scipy.spatial import ConvexHull
 
 from drake_screw.planning.swept import convex
 from drake_screw.planning.swept.convex import BALL, Convex
+from drake_screw.robot.shapes import vertices
 from drake_screw.typing import Array
 
 ENDLESS = 20.0
@@ -109,7 +110,7 @@ def _plain(kind: int, size: Array, ball: float, p: Array) -> Core:
 def _hull(shape: Mesh | ConvexShape) -> Core:
     """The convex hull of a mesh, which is what Drake takes it for."""
     surface = shape.GetConvexHull()
-    points = np.array([surface.vertex(i) for i in range(surface.num_vertices())])
+    points = vertices(surface)
     hull = ConvexHull(points)
     corners = points[hull.vertices]
     number = np.full(len(points), -1)
