@@ -15,6 +15,7 @@ from drake_screw.errors import (
     RunDirectoryError,
     ScenarioError,
 )
+from drake_screw.lazily import lazily
 
 if TYPE_CHECKING:
     from drake_screw import screws
@@ -44,26 +45,27 @@ __all__ = [
     "screws",
 ]
 
-_MODULES = {
-    "Demonstration": "drake_screw.demonstrations",
-    "Outcomes": "drake_screw.planning",
-    "ScrewPlanExecutor": "drake_screw.execution",
-    "Setup": "drake_screw.assembly.setup",
-    "load_scenario": "drake_screw.scenario.loader",
-    "new_run": "drake_screw.runs.run",
-    "open_run": "drake_screw.runs.run",
-}
+_of_modules = lazily(
+    __name__,
+    {
+        "Demonstration": "drake_screw.demonstrations",
+        "Outcomes": "drake_screw.planning",
+        "ScrewPlanExecutor": "drake_screw.execution",
+        "Setup": "drake_screw.assembly.setup",
+        "load_scenario": "drake_screw.scenario.loader",
+        "new_run": "drake_screw.runs.run",
+        "open_run": "drake_screw.runs.run",
+    },
+)
 
 
 def __getattr__(name: str) -> Any:
     """Import the rest of `__all__` when it is first asked for: Drake takes a second to load."""
-    if name in _MODULES:
-        return getattr(import_module(_MODULES[name]), name)
     if name == "screws":
         return import_module("drake_screw.screws")
     if name == "__version__":
         return import_module("importlib.metadata").version("drake-screw")
-    raise AttributeError(f"module 'drake_screw' has no attribute '{name}'")
+    return _of_modules(name)
 
 
 def __dir__() -> list[str]:

@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import binom
 
 from drake_screw.acquisition.cover_program import Program
 from drake_screw.acquisition.cover_search import searched
@@ -111,6 +110,8 @@ def too_few(table: CoverTable, best: Chosen, tau: ArrayLike, delta: float) -> bo
     (True, False)
     """
     failures = table.failures(best).max()
+    from scipy.stats import binom  # takes long to import
+
     chance = binom.sf(failures - 1, table.samples, np.asarray(tau)).sum()
     return bool(comb(table.D, len(best)) * chance <= delta)
 

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 from scipy.special import betainc, betaln, expit, logit
 
 from drake_screw.typing import Array
@@ -161,6 +160,8 @@ def coverage_bound(n: ArrayLike, s: ArrayLike, delta: float) -> float:
     >>> coverage_bound([90, 16], [0, 16], delta=0.05)
     0.0
     """
+    from scipy.optimize import brentq  # takes long to import
+
     samples, failures = np.atleast_1d(n), np.atleast_1d(s)
     if (samples == failures).any():
         return 0.0

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from drake_screw.commands.options import JsonOption, RunArgument, VerboseOption
 from drake_screw.commands.output import Output
 
 EXAMPLE = "drake-screw report runs/pouring/2026-11-22_10-15-00"
 
 
-def report(run: RunArgument, json: JsonOption = None, verbose: VerboseOption = False) -> None:
+def report(
+    run: RunArgument,
+    svg: Annotated[
+        bool, typer.Option("--svg", help="Draw the pictures as SVG, too, to be printed large.")
+    ] = False,
+    json: JsonOption = None,
+    verbose: VerboseOption = False,
+) -> None:
     """Show a finished run, and write report.html.
 
     Draws all of its pictures again, too.
@@ -25,6 +36,6 @@ def report(run: RunArgument, json: JsonOption = None, verbose: VerboseOption = F
     for event in events:
         show_event(event, job.setup.regions, output.console)
     show_summary(summary, output.console)
-    redraw(job)
+    redraw(job, svg=svg)
     output.say(f"written: {write_report(job.reader)}")
     output.write(summary)

@@ -10,13 +10,15 @@ the whole down.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.ndimage import maximum_filter1d
 
 from drake_screw.execution.fastest import Law, fastest
 from drake_screw.typing import Array
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 FINE = 1e-3  # s, between points at which the fastest law is averaged
 EVERY = 4  # of them one is a sample
@@ -62,6 +64,8 @@ def smooth_law(path: CubicSpline, velocity: Array, acceleration: Array, window: 
         velocity, acceleration: (n,) limits of the joints.
         window: s, over which the acceleration changes.
     """
+    from scipy.ndimage import maximum_filter1d  # takes long to import
+
     grid = _grid(path.x)
     slope, bend = path(grid, 1), path(grid, 2)
     most, found = np.full(len(grid), np.inf), []
@@ -88,6 +92,8 @@ def spline(s: Array, q: Array) -> CubicSpline:
         s: (m,) from 0 to 1.
         q: (m, n) rad or m.
     """
+    from scipy.interpolate import CubicSpline  # takes long to import
+
     kept = np.concatenate([[True], (np.diff(s) > 1e-6) & (s[1:] < 1.0 - 1e-6)])
     s, q = np.append(s[kept], 1.0), np.concatenate([q[kept], q[-1:]])
     if len(s) < 5:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import adjoint, shift
@@ -66,6 +65,8 @@ def range_of(chain: ScrewChain) -> Range:
 
 def spread(within: Range, count: int) -> Array:
     """Configurations (count, n), spread evenly over nine tenths of the ranges."""
+    from scipy.stats import qmc  # takes long to import
+
     u = qmc.Sobol(len(within.lower), seed=0).random(int(2 ** np.ceil(np.log2(count))))[:count]
     return np.asarray(within.middle + 0.9 * (2.0 * u - 1.0) * within.half)
 

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import qmc
 
 from drake_screw.planning.outcomes import Outcomes, Plan
 from drake_screw.planning.paths import SPACING
@@ -29,6 +28,8 @@ def seeds(chain: ScrewChain, count: int) -> Array:
 
     A joint without limits has a turn for its range.
     """
+    from scipy.stats import qmc  # takes long to import
+
     u = qmc.Sobol(chain.n, seed=0).random(int(2 ** np.ceil(np.log2(max(count, 1)))))[:count] - 0.5
     part = np.where(np.arange(count) % 2 == 0, NARROW, WIDE)
     lower, upper = within_a_turn(chain.lower, chain.upper)

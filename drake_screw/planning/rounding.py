@@ -13,7 +13,6 @@ import itertools
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.interpolate import BSpline
 
 from drake_screw.typing import Array
 
@@ -39,6 +38,8 @@ def rounded(corners: Array) -> Iterator[Array]:
     Yields:
         (m, n) samples at even steps of the curve's parameter, from the first corner to the last.
     """
+    from scipy.interpolate import BSpline  # takes long to import
+
     for gap in GAPS:
         control = _control_points(corners, gap)
         spans = len(control) - 3

@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from drake_screw.errors import RecordingError, counted, suggestion
 from drake_screw.recordings.mapping import FILE, Mapping
@@ -212,6 +211,8 @@ def _moves(x: Array, each: Episode, still: float) -> bool:
 
 def _pauses(t: Array, x: Array, pause: float, still: float) -> list[tuple[int, int]]:
     """First and last rows of pauses; the longest that is still is found in bins of time first."""
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d  # take long to import
+
     number = ((t - t[0]) / (pause / _BINS)).astype(np.int64)
     starts = np.flatnonzero(np.append(True, np.diff(number) > 0))
     filled, window = int(number[-1]) + 1, _BINS - 1  # whole bins in the shortest pause

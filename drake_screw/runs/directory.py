@@ -27,6 +27,8 @@ from drake_screw.runs.region_table import regions_csv
 
 RUN, SCENARIO, LOG = "run.json", "scenario.yaml", "run.log"
 INSTANCES, DEMONSTRATIONS = "instances.npz", "demonstrations"
+PICTURE = "rounds.png"
+"""The course of the whole run."""
 UNWRITABLE_RUN = "Free some space or make the run's folder writable, then carry on with --resume."
 
 

@@ -10,21 +10,20 @@ from pydrake.geometry import Meshcat, MeshcatParams
 from drake_screw.acquisition import RoundFinished
 from drake_screw.assembly.setup import Setup
 from drake_screw.files import writing
-from drake_screw.runs.directory import UNWRITABLE_RUN
+from drake_screw.runs.directory import PICTURE, UNWRITABLE_RUN
 from drake_screw.typing import Array
 from drake_screw.visualization import Scene, save_heat_map, save_run_figure
 from drake_screw.visualization.lifetime import scratch
 from drake_screw.visualization.outlines import outlines
 
-PICTURE = "rounds.png"
-"""The course of the whole run."""
 SCENE = "meshcat.html"
 
 
-def draw_round(setup: Setup, event: RoundFinished, stem: Path) -> None:
-    """Draw a round as ``<stem>.png`` and ``<stem>.svg``."""
+def draw_round(setup: Setup, event: RoundFinished, stem: Path, *, svg: bool = False) -> None:
+    """Draw a round as ``<stem>.png``, with `svg` as ``<stem>.svg``, too."""
     things = outlines(setup.obstacles)
-    save_heat_map(event, event.regions, stem, scenario=setup.scenario.name, things=things)
+    name = setup.scenario.name
+    save_heat_map(event, event.regions, stem, scenario=name, things=things, svg=svg)
 
 
 def draw_run(
@@ -33,8 +32,9 @@ def draw_run(
     folder: Path,
     *,
     asked: Array | None = None,
+    svg: bool = False,
 ) -> None:
-    """Draw a whole run into a folder: rounds.png, rounds.svg and meshcat.html.
+    """Draw a whole run into a folder: rounds.png, with `svg` rounds.svg, and meshcat.html.
 
     Of a run without a round there is just the scene, and in it the place that was `asked` for,
     (k, 3), if there is one.
@@ -59,6 +59,7 @@ def draw_run(
             scenario=name,
             beta=setup.goal.beta,
             things=outlines(setup.obstacles),
+            svg=svg,
         )
         with scratch():
             _save_scene(setup, rounds, folder / SCENE)

@@ -30,10 +30,9 @@ from drake_screw.runs.begun_with import (
 )
 from drake_screw.runs.certificate import Certificate, certificate
 from drake_screw.runs.codec import FORMAT
-from drake_screw.runs.directory import SCENARIO, RunDirectory, now, versions
+from drake_screw.runs.directory import PICTURE, SCENARIO, RunDirectory, now, versions
 from drake_screw.runs.html import certificate_html, run_html
 from drake_screw.runs.narration import describe
-from drake_screw.runs.pictures import PICTURE, draw_round, draw_run
 from drake_screw.runs.reader import RunReader
 from drake_screw.runs.records import RunRecord
 from drake_screw.runs.resuming import carry_on
@@ -159,6 +158,8 @@ class Run:
         self.directory.log(describe(event, self.setup.regions))
         if isinstance(event, RoundFinished):
             if event.round >= self.reader.rounds:
+                from drake_screw.runs.pictures import draw_round  # takes long to import
+
                 self.directory.add_round(event, lambda e, stem: draw_round(self.setup, e, stem))
         elif isinstance(event, Finished):
             draw_all(self)
@@ -276,19 +277,23 @@ def resumable(run: Run) -> Run:
     return run
 
 
-def redraw(run: Run) -> None:
-    """Draw the pictures of all rounds, and of the whole run, again."""
+def redraw(run: Run, *, svg: bool = False) -> None:
+    """Draw the pictures of all rounds, and of the whole run, again; with `svg` as SVG, too."""
+    from drake_screw.runs.pictures import draw_round
+
     for event in run.reader.all_rounds():
         stem = run.directory.round_folder(event.round) / "heat_map"
-        draw_round(run.setup, event, stem)
-    draw_all(run)
+        draw_round(run.setup, event, stem, svg=svg)
+    draw_all(run, svg=svg)
 
 
-def draw_all(run: Run) -> None:
+def draw_all(run: Run, *, svg: bool = False) -> None:
     """Draw the pictures of a whole run; where it has no round, the place that was asked for."""
+    from drake_screw.runs.pictures import draw_run
+
     reader, wanted = run.reader, run.setup.scenario.demonstrations.initial
     number, asked = len(run.directory.record.demonstrations), None
     if reader.rounds == 0 and isinstance(wanted, int) and number < wanted:
         seed, regions = run.setup.scenario.seed, run.setup.regions
         asked = initial_places(regions, seed, number, run.setup.first)[0].x_y_yaw
-    draw_run(run.setup, reader.all_rounds(), run.directory.path, asked=asked)
+    draw_run(run.setup, reader.all_rounds(), run.directory.path, asked=asked, svg=svg)

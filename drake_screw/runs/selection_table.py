@@ -8,7 +8,6 @@ from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import binom
 
 from drake_screw.acquisition.cover_table import CoverTable
 from drake_screw.assembly.setup import Setup
@@ -69,6 +68,8 @@ class Asked:
 
         If none failed oftener than `tau`, the answer would be yes with probability `delta` at most.
         """
+        from scipy.stats import binom  # takes long to import
+
         chance = binom.sf(table.failures(range(table.D)) - 1, table.samples, self.tau)
         return bool((chance <= delta / table.K).any())
 

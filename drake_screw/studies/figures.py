@@ -116,9 +116,9 @@ def distributions_figure(
 
 def save_distributions(
     distributions: Mapping[int, Distribution], stem: str | Path, *, scenario: str = ""
-) -> tuple[Path, Path]:
+) -> tuple[Path, ...]:
     """Write `distributions_figure` as ``<stem>.png`` and ``<stem>.svg``."""
-    return save_figure(distributions_figure(distributions, scenario=scenario), stem)
+    return save_figure(distributions_figure(distributions, scenario=scenario), stem, svg=True)
 
 
 def comparison_figure(
@@ -177,10 +177,10 @@ def save_comparison(
     scenario: str = "",
     note: str = "",
     things: Sequence[Outline] = (),
-) -> tuple[Path, Path]:
+) -> tuple[Path, ...]:
     """Write `comparison_figure` as ``<stem>.png`` and ``<stem>.svg``."""
     figure = comparison_figure(rounds, regions, scenario=scenario, note=note, things=things)
-    return save_figure(figure, stem)
+    return save_figure(figure, stem, svg=True)
 
 
 def _headline(event: Round, regions: GridRegions) -> str:

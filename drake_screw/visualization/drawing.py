@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.colors import to_rgb
 from numpy.typing import ArrayLike
 from pydrake.geometry import Meshcat, Rgba
 
@@ -30,4 +29,6 @@ def draw_frames(meshcat: Meshcat, path: str, X_WF: ArrayLike, *, size: float = 0
 
 def rgba(color: str, opacity: float = 1.0) -> Rgba:
     """A colour as Meshcat's materials take it."""
+    from matplotlib.colors import to_rgb  # takes long to import
+
     return Rgba(*to_rgb(color), opacity)

@@ -14,12 +14,20 @@ from drake_screw.visualization.palette import PAPER
 _SVG = {"svg.hashsalt": "drake_screw", "svg.fonttype": "path"}
 
 
-def save_figure(figure: Figure, stem: str | Path) -> tuple[Path, Path]:
-    """Write a figure as ``<stem>.png`` and ``<stem>.svg`` without date, program or random ids."""
-    png, svg = Path(f"{stem}.png"), Path(f"{stem}.svg")
+def save_figure(figure: Figure, stem: str | Path, *, svg: bool = False) -> tuple[Path, ...]:
+    """Write a figure as ``<stem>.png``, and with `svg` as ``<stem>.svg``.
+
+    There is no date in them, no program and no random id.
+
+    Returns:
+        The files.
+    """
+    png, drawing = Path(f"{stem}.png"), Path(f"{stem}.svg")
     figure.savefig(png, dpi=160, metadata={"Software": None}, facecolor=PAPER)
-    svg.write_bytes(_svg(figure))
-    return png, svg
+    if not svg:
+        return (png,)
+    drawing.write_bytes(_svg(figure))
+    return png, drawing
 
 
 def figure_address(figure: Figure) -> str:

@@ -139,14 +139,17 @@ def save_heat_map(
     scenario: str = "",
     dots: int = MOST_DOTS,
     things: Sequence[Outline] = (),
-) -> tuple[Path, Path]:
-    """Write `heat_map_figure` as ``<stem>.png`` and ``<stem>.svg``, the same bytes every time.
+    svg: bool = False,
+) -> tuple[Path, ...]:
+    """Write `heat_map_figure` as ``<stem>.png``, with `svg` as ``<stem>.svg``, too.
+
+    They have the same bytes every time.
 
     Returns:
-        The two files.
+        The files.
     """
     figure = heat_map_figure(event, regions, scenario=scenario, dots=dots, things=things)
-    return save_figure(figure, stem)
+    return save_figure(figure, stem, svg=svg)
 
 
 def add_colour_bar(figure: Figure, ax: Axes) -> None:

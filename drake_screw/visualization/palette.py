@@ -7,15 +7,17 @@ materials (`Rgba`) as sRGB: pass the former through `linear_from_srgb`.
 from __future__ import annotations
 
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.colors import Colormap, to_hex, to_rgb
 from numpy.typing import ArrayLike
 
 from drake_screw.planning import Cause
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import AHEAD, DONE, FAILED
+
+if TYPE_CHECKING:
+    from matplotlib.colors import Colormap
 
 OUTCOME_COLORS = MappingProxyType(
     {
@@ -61,6 +63,8 @@ def failure_map() -> Colormap:
     Lightness falls steadily along it (Brewer's BuPu), so it also works without colour vision and
     in grey print. NaN, a region without samples, is grey.
     """
+    import matplotlib as mpl  # takes long to import
+
     return mpl.colormaps["BuPu"].with_extremes(bad=UNKNOWN)
 
 
@@ -71,11 +75,15 @@ def failure_color(probability: ArrayLike) -> Array:
 
 def failure_scale() -> list[str]:
     """Hexadecimal colours of failure probabilities from 0 to 1, for a scale in HTML."""
+    from matplotlib.colors import to_hex
+
     return [to_hex(color) for color in failure_color(np.linspace(0.0, 1.0, 9))]
 
 
 def ink_on(rgb: ArrayLike) -> str:
     """The one of `INK` and `PAPER` that reads better on an sRGB colour (3,)."""
+    from matplotlib.colors import to_rgb
+
     contrasts = {text: contrast(to_rgb(text), rgb) for text in (INK, PAPER)}
     return max(contrasts, key=contrasts.__getitem__)
 

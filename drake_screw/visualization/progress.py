@@ -157,11 +157,14 @@ def save_run_figure(
     scenario: str = "",
     beta: float | None = None,
     things: Sequence[Outline] = (),
-) -> tuple[Path, Path]:
-    """Write `run_figure` as ``<stem>.png`` and ``<stem>.svg``, the same bytes every time.
+    svg: bool = False,
+) -> tuple[Path, ...]:
+    """Write `run_figure` as ``<stem>.png``, with `svg` as ``<stem>.svg``, too.
+
+    They have the same bytes every time.
 
     Returns:
-        The two files.
+        The files.
     """
     figure = run_figure(events, regions, scenario=scenario, beta=beta, things=things)
-    return save_figure(figure, stem)
+    return save_figure(figure, stem, svg=svg)

@@ -16,9 +16,11 @@ def test_report_draws_again(command) -> None:
     for file in [*Path("here").rglob("*.png"), Path("here/meshcat.html")]:
         file.unlink()
     record = Path("here/run.json").read_text()
-    code, out, _ = command("report", "here")
+    code, out, _ = command("report", "here", "--svg")
     assert code == 0
     assert "certificate" in out
+    assert Path("here/rounds.svg").exists()
+    assert Path("here/round_01/heat_map.svg").exists()
     assert Path("here/meshcat.html").exists()
     assert Path("here/round_01/heat_map.png").exists()
     assert Path("here/run.json").read_text() == record

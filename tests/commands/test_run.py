@@ -36,7 +36,7 @@ def test_run_leaves_a_certified_run(command, tmp_path) -> None:
     assert last["failure_rates"][last["weakest_region"]] == max(last["failure_rates"])
     for k in range(len(record["rounds"])):
         folder = path / f"round_{k + 1:02d}"
-        for name in ("regions.csv", "instances.npz", "heat_map.png", "heat_map.svg"):
+        for name in ("regions.csv", "instances.npz", "heat_map.png"):
             assert (folder / name).stat().st_size > 0
     for name in ("scenario.yaml", "run.log", "meshcat.html", "rounds.png"):
         assert (path / name).stat().st_size > 0

@@ -212,8 +212,8 @@ def test_a_weakest_region_larger_than_the_cells_is_framed_whole(ax, make_round) 
 
 def test_files_are_the_same_every_time(tmp_path, make_round, regions) -> None:
     event = make_round(regions, FAILURES)
-    first = save_heat_map(event, regions, tmp_path / "a.b", scenario="pouring")
-    second = save_heat_map(event, regions, tmp_path / "again", scenario="pouring")
+    first = save_heat_map(event, regions, tmp_path / "a.b", scenario="pouring", svg=True)
+    second = save_heat_map(event, regions, tmp_path / "again", scenario="pouring", svg=True)
     assert [f.name for f in first] == ["a.b.png", "a.b.svg"]
     for one, other in zip(first, second, strict=True):
         assert one.read_bytes() == other.read_bytes()

@@ -63,7 +63,8 @@ def test_every_round_has_its_heat_map(events, regions) -> None:
 
 
 def test_one_round_is_enough(tmp_path, events, regions) -> None:
-    files = save_run_figure(events[:1], [regions], tmp_path / "run")
-    again = save_run_figure(events[:1], [regions], tmp_path / "again")
+    files = save_run_figure(events[:1], [regions], tmp_path / "run", svg=True)
+    again = save_run_figure(events[:1], [regions], tmp_path / "again", svg=True)
+    assert [file.suffix for file in files] == [".png", ".svg"]
     for one, other in zip(files, again, strict=True):
         assert one.read_bytes() == other.read_bytes()

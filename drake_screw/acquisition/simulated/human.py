@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-from scipy.signal import butter, sosfiltfilt
 
 from drake_screw.acquisition.simulated.candidate_paths import damped_joint_motion
 from drake_screw.robot import ScrewChain
@@ -70,6 +68,8 @@ def timed(
     Returns:
         q: (k, n), k / 100 s long.
     """
+    from scipy.interpolate import PchipInterpolator  # takes long to import
+
     ends = [0, *(int(np.flatnonzero(segment == i)[-1]) for i in range(len(pauses)))]
     stops = [rng.uniform(*pause) for pause in pauses]
     if rng.random() < 0.4:
@@ -105,6 +105,8 @@ def with_hand_noise(chain: ScrewChain, q: Array, rng: np.random.Generator) -> Ar
     Returns:
         (m, n).
     """
+    from scipy.signal import butter, sosfiltfilt  # takes long to import
+
     V_WE = np.zeros((len(q), 6))
     for part in (DRIFT, TREMOR):
         noise = sosfiltfilt(
