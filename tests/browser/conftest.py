@@ -156,8 +156,9 @@ def tidy() -> None:
     gc.collect()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
+    """It ends with these tests: a page that is left open goes on drawing."""
     webdriver = pytest.importorskip("selenium.webdriver", reason="selenium is not installed")
     chromium, service = shutil.which("chromium"), shutil.which("chromedriver")
     if chromium is None or service is None:
