@@ -30,6 +30,7 @@ from drake_screw.commands.any_console import any_console
 from drake_screw.commands.instance_option import InstanceCommand
 from drake_screw.commands.log import set_up_logging
 from drake_screw.commands.options import VerboseOption
+from drake_screw.commands.signals import interruptible
 from drake_screw.errors import DrakeScrewError
 
 BAD_INPUT = 2
@@ -99,7 +100,8 @@ def main() -> None:
     set_up_logging()
     began = time.perf_counter()
     try:
-        app()
+        with interruptible():
+            app()
     except DrakeScrewError as error:
         _log.debug("raised here:", exc_info=True)
         console = Console(stderr=True, soft_wrap=True)

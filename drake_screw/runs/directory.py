@@ -58,10 +58,11 @@ class RunDirectory:
         Raises:
             RunDirectoryError: the place is taken or cannot be written.
         """
-        path = path or fresh_folder(Path("runs") / record.scenario)
-        directory = cls(path, record)
-        with writing(path, remedy="Choose a folder you may write to with --output."):
+        runs = Path("runs") / record.scenario
+        with writing(path or runs, remedy="Choose a folder you may write to with --output."):
+            path = fresh_folder(runs) if path is None else path
             make_folder(path, "run")
+            directory = cls(path, record)
             write_text(path / SCENARIO, scenario_text)
             directory.save()
         return directory

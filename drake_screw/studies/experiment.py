@@ -25,6 +25,20 @@ from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import AXES, GridRegions, WorkArea, grid_regions
 
 
+def numbers_of_regions(text: str) -> tuple[int, ...]:
+    """Reads ``1,2,4,8,16``.
+
+    Raises:
+        ScenarioError: it is not such a list.
+    """
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError as error:
+        raise ScenarioError(
+            f"'{text}' is not a list of numbers of regions", remedy="Write, say, 1,2,4,8,16."
+        ) from error
+
+
 def split(area: WorkArea, K: int) -> GridRegions:
     """A grid of K equal regions, as square as it goes: 1 x 1, 1 x 2, 2 x 2, 2 x 4, 4 x 4, ...
 
