@@ -232,6 +232,11 @@ def _temporary() -> Path:
         ) from error
 
 
+def printable(name: str) -> str:
+    """A file's name as text: bytes that are no UTF-8 are written as their numbers."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
+
+
 def file_hash(file: Path) -> str:
     """SHA-256 of a file's contents."""
     return hashlib.sha256(file.read_bytes()).hexdigest()

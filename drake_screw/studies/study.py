@@ -33,7 +33,7 @@ from drake_screw.runs.begun_with import check_ways_around
 from drake_screw.runs.directory import SCENARIO, now, versions
 from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
-from drake_screw.studies.experiment import Experiment, StudyRun, split
+from drake_screw.studies.experiment import Experiment, StudyRun, check_runs, split
 from drake_screw.studies.figures import Distribution, save_distributions
 from drake_screw.studies.hidden_failures import draw_hidden_failure
 from drake_screw.studies.table import HEADER, read_runs, row, summary_csv
@@ -188,11 +188,7 @@ def new_study(
     Raises:
         DrakeScrewError: something cannot be used; nothing is written then.
     """
-    if runs < 1 or not regions:
-        raise ScenarioError(
-            f"{runs} runs for {len(regions)} numbers of regions",
-            remedy="Give at least one run, and one number of regions.",
-        )
+    check_runs(runs, regions)
     if scenario.teacher.kind == "interactive":
         raise ScenarioError(
             "teacher.kind: an interactive teacher would be asked in every run of a study",
