@@ -30,7 +30,8 @@ from drake_screw.commands.any_console import any_console
 from drake_screw.commands.instance_option import InstanceCommand
 from drake_screw.commands.log import set_up_logging
 from drake_screw.commands.options import VerboseOption
-from drake_screw.errors import DrakeScrewError
+from drake_screw.commands.signals import interruptible
+from drake_screw.errors import DrakeScrewError, shortened
 
 BAD_INPUT = 2
 """Exit code."""
@@ -99,14 +100,24 @@ def main() -> None:
     set_up_logging()
     began = time.perf_counter()
     try:
-        app()
+        with interruptible():
+            app()
     except DrakeScrewError as error:
         _log.debug("raised here:", exc_info=True)
-        console = Console(stderr=True, soft_wrap=True)
-        console.print(f"error: {error}", style="red", markup=False, highlight=False)
+        _complain(str(error))
+        sys.exit(BAD_INPUT)
+    except OSError as error:  # that nobody has better words for
+        _log.debug("raised here:", exc_info=True)
+        place = "" if error.filename is None else f"{error.filename}: "
+        _complain(f"{place}{error.strerror or error}")
         sys.exit(BAD_INPUT)
     finally:
         _log.debug("ended after %.1f s", time.perf_counter() - began)
+
+
+def _complain(text: str) -> None:
+    console = Console(stderr=True, soft_wrap=True)
+    console.print(f"error: {shortened(text)}", style="red", markup=False, highlight=False)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ print ``str(error)`` alone. Failing to find a plan is a value (`planning.Outcome
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -42,7 +43,21 @@ class DrakeScrewError(Exception):
         place = "" if self.file is None else f"{self.file}: "
         if self.file is not None and self.line is not None:
             place = f"{self.file}:{self.line}: "
-        return f"{place}{self.message}" + (f"\n  {self.remedy}" if self.remedy else "")
+        remedy = f"\n  {self.remedy}" if self.remedy else ""
+        return shortened(f"{place}{self.message}{remedy}")
+
+
+LONGEST = 240
+"""Characters of a word, or of what is quoted, that a message repeats; of more, both ends."""
+
+
+def shortened(text: str) -> str:
+    """A message with what is too long in it cut short."""
+
+    def cut(found: re.Match[str]) -> str:
+        return f"{found[0][: LONGEST // 2]} ... {found[0][-LONGEST // 2 :]}"
+
+    return re.sub(rf"'[^'\n]{{{LONGEST},}}'|\S{{{LONGEST},}}", cut, text)
 
 
 class ModelError(DrakeScrewError):

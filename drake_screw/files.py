@@ -10,7 +10,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
@@ -41,8 +41,10 @@ def write_bytes(file: Path, content: bytes) -> None:
     try:
         temporary.write_bytes(content)
         os.replace(temporary, file)
-    except OSError:
-        temporary.unlink(missing_ok=True)
+    except OSError as error:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        error.add_note(f"{_size(len(content))} are needed for {file.name}")
         raise
 
 
@@ -125,8 +127,38 @@ def writing(
         yield
     except OSError as error:
         raise kind(
-            f"cannot be written: {error.strerror or error}", remedy=remedy, file=place
+            f"cannot be written: {error.strerror or error}{_room(place, error)}",
+            remedy=remedy,
+            file=place,
         ) from error
+
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
+
+
+def _room(place: Path, error: OSError) -> str:
+    """Which file system is full, and what is needed, where it is that."""
+    if error.errno not in _NO_ROOM:
+        return ""
+    mount = place.absolute()
+    while not os.path.ismount(mount):
+        mount = mount.parent
+    try:
+        free = f" has {_size(shutil.disk_usage(mount).free)} left"
+    except OSError:
+        free = ""
+    return "; ".join(["", f"the file system {mount}{free}", *getattr(error, "__notes__", [])])
+
+
+def _size(size: int) -> str:
+    """Bytes for people.
+
+    >>> _size(900), _size(84580), _size(2603840)
+    ('900 bytes', '85 kB', '2.6 MB')
+    """
+    if size < 1000:
+        return f"{size} bytes"
+    return f"{size / 1e3:.0f} kB" if size < 1e6 else f"{size / 1e6:.1f} MB"
 
 
 def make_folder(path: Path, what: str) -> None:
@@ -150,22 +182,35 @@ def make_folder(path: Path, what: str) -> None:
 
 
 def fresh_folder(parent: Path) -> Path:
-    """The path of a folder that does not exist yet, named after the time: ``parent/<time>``."""
+    """Make a folder that nobody else has, named after the time: ``parent/<time>``.
+
+    Raises:
+        OSError: it cannot be made.
+    """
     stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
+    parent.mkdir(parents=True, exist_ok=True)
     path, count = parent / stamp, 1
-    while path.exists():
-        count += 1
-        path = parent / f"{stamp}_{count}"
-    return path
+    while True:
+        try:
+            path.mkdir()
+            return path
+        except FileExistsError:
+            count += 1
+            path = parent / f"{stamp}_{count}"
 
 
 def cache_folder() -> Path:
     """Where what is worked out once is kept: numba's cache folder if it has one, else the user's.
 
     Where neither can be written to, a temporary folder, which is a new one in every process.
+
+    Raises:
+        DrakeScrewError: not even that can be made.
     """
-    user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     for parent in (os.environ.get("NUMBA_CACHE_DIR") or user, user):
+        if parent.startswith("~"):  # nobody's home is known
+            continue
         folder = Path(parent) / "drake_screw"
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -178,7 +223,18 @@ def cache_folder() -> Path:
 
 @lru_cache
 def _temporary() -> Path:
-    return Path(tempfile.mkdtemp(prefix="drake_screw_"))
+    try:
+        return Path(tempfile.mkdtemp(prefix="drake_screw_"))
+    except OSError as error:
+        raise DrakeScrewError(
+            f"there is no folder to keep anything in for a while: {error.strerror or error}",
+            remedy="Set XDG_CACHE_HOME or TMPDIR to a folder that you may write to.",
+        ) from error
+
+
+def printable(name: str) -> str:
+    """A file's name as text: bytes that are no UTF-8 are written as their numbers."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
 
 
 def file_hash(file: Path) -> str:

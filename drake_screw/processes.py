@@ -13,7 +13,10 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
+from threading import Thread
 from typing import Any, TypeVar
 
 from drake_screw.errors import DrakeScrewError
@@ -79,8 +82,16 @@ def share_out(
 
 def _begin(build: Callable[[], Any]) -> None:
     """Sets a process up; what Drake warns of has been told by the one that it works for."""
+    Thread(target=_end_with, args=(parent_process(),), daemon=True).start()
     logging.getLogger("drake").addFilter(lambda record: record.levelno >= logging.ERROR)
     _here.append(build())
+
+
+def _end_with(parent: BaseProcess | None) -> None:
+    """Ends this process when the one that it works for has ended, however it did."""
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(1)
 
 
 def _work(work: Callable[[Any, Any], Any], job: Any) -> Any:

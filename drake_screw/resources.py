@@ -46,7 +46,7 @@ def find_resource(kind: Kind, name_or_path: PathLike, suffixes: Sequence[str]) -
     if not looks_like_path(text, suffixes):
         for suffix in suffixes:
             shipped = _folder(kind) / f"{text}{suffix}"
-            if shipped.is_file():
+            if os.path.isfile(shipped):
                 return shipped
     if os.path.isfile(text):
         return Path(os.path.abspath(text))

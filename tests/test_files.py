@@ -21,8 +21,7 @@ def test_a_fresh_folder_is_another_one_each_time(tmp_path: Path) -> None:
     folders = []
     for _ in range(3):
         folders.append(fresh_folder(tmp_path))
-        assert not folders[-1].exists()
-        folders[-1].mkdir()
+        assert not list(folders[-1].iterdir())
     assert len(set(folders)) == 3
     assert {folder.parent for folder in folders} == {tmp_path}
 

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import logging
 import os
+import subprocess
+import sys
+import time
 from functools import partial
+from pathlib import Path
 
 import pytest
 
@@ -68,3 +72,49 @@ def test_what_drake_warns_of_is_not_said_again_by_each_process(capfd) -> None:
     said = capfd.readouterr().err
     assert "cannot be read" in said
     assert "no mass" not in said
+
+
+BUSY = """
+import sys, time
+from drake_screw.processes import share_out
+from tests.test_processes import say_and_wait, tool
+from functools import partial
+
+if __name__ == "__main__":
+    list(share_out(say_and_wait, range(2), build=partial(tool, 0), workers=2))
+"""
+
+
+def say_and_wait(tool: list[int], job: int) -> None:
+    print(os.getpid(), flush=True)
+    time.sleep(60)
+
+
+def test_processes_end_with_the_one_they_work_for(tmp_path) -> None:
+    """However that one ends."""
+    script = tmp_path / "busy.py"
+    script.write_text(BUSY)
+    root = str(Path(__file__).parents[1])
+    main = subprocess.Popen(
+        [sys.executable, str(script)],
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": root},
+    )
+    assert main.stdout is not None
+    workers = [int(main.stdout.readline()) for _ in range(2)]
+    main.kill()
+    main.wait()
+    late = time.monotonic() + 30
+    while any(map(alive, workers)):
+        assert time.monotonic() < late
+        time.sleep(0.05)
+
+
+def alive(process: int) -> bool:
+    """A process that has ended and that nobody has asked about, a zombie, is not."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"

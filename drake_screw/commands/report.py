@@ -26,7 +26,8 @@ def report(
     """
     output = Output(json)
     from drake_screw.commands.console import show_event, show_summary
-    from drake_screw.runs.run import open_run, redraw
+    from drake_screw.runs.redrawing import redraw
+    from drake_screw.runs.run import open_run
     from drake_screw.runs.summary import summarize_run
     from drake_screw.web.report_page import write_report
 
@@ -36,6 +37,6 @@ def report(
     for event in events:
         show_event(event, job.setup.regions, output.console)
     show_summary(summary, output.console)
-    redraw(job, svg=svg)
+    redraw(job.reader, svg=svg)
     output.say(f"written: {write_report(job.reader)}")
     output.write(summary)

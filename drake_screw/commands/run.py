@@ -21,6 +21,7 @@ from drake_screw.commands.options import (
     chosen_scenario,
 )
 from drake_screw.commands.output import Output
+from drake_screw.commands.signals import INTERRUPTED
 
 _log = logging.getLogger(__name__)
 
@@ -97,7 +98,7 @@ def run(
                     pass
         except KeyboardInterrupt:
             out.say(f"interrupted; carry on with: drake-screw run --resume {job.directory.path}")
-            raise typer.Exit(130) from None
+            raise typer.Exit(INTERRUPTED) from None
         summary = summarize_run(job)
         show_summary(summary, out.console)
         out.write(summary)

@@ -20,6 +20,7 @@ from drake_screw.commands.options import (
     chosen_scenario,
 )
 from drake_screw.commands.output import Output
+from drake_screw.commands.signals import INTERRUPTED
 
 EXAMPLE = "drake-screw study pouring --regions 1,4,16 --runs 200"
 
@@ -53,7 +54,8 @@ def study(
         check_resumed_alone("study", scenario, demonstrations, model, seed, output, set_)
     out = Output(json)
     from drake_screw.commands.study_console import show_study
-    from drake_screw.studies.study import new_study, numbers_of_regions, open_study
+    from drake_screw.studies.experiment import numbers_of_regions
+    from drake_screw.studies.study import new_study, open_study
 
     if resume is None:
         numbers = numbers_of_regions(regions)
@@ -65,5 +67,5 @@ def study(
         found = show_study(job, out.console, workers=workers)
     except KeyboardInterrupt:
         out.say(f"interrupted; carry on with: drake-screw study --resume {job.path}")
-        raise typer.Exit(130) from None
+        raise typer.Exit(INTERRUPTED) from None
     out.write(found)

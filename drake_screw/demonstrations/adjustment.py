@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from drake_screw.compile_cache import cached_njit
 from drake_screw.demonstrations.screw_fit import poses_on_screws
 from drake_screw.screws import (
     pose,
@@ -85,7 +85,7 @@ def adjusted(
     return Adjusted(pose(rotation_from_quaternion(nearest[1]), nearest[0]), least, farthest)
 
 
-@njit(cache=True)
+@cached_njit()
 def _in_order(
     p: Array, q: Array, screw: Array, P: Array, Q: Array, place: float, turn: float
 ) -> NDArray[np.int64]:
@@ -120,7 +120,7 @@ def _in_order(
     return chosen
 
 
-@njit(cache=True)
+@cached_njit()
 def _deviations(
     p: Array, q: Array, screw: Array, P: Array, Q: Array, at: Array, place: float, turn: float
 ) -> Array:
@@ -145,7 +145,7 @@ def _deviations(
     return deviations
 
 
-@njit(cache=True)
+@cached_njit()
 def _normal_equations(
     deviations: Array, sizes: Array, screw: Array, s: Array, count: int, norm: int
 ) -> tuple[Array, Array]:

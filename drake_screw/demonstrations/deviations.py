@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from drake_screw.compile_cache import cached_njit
 from drake_screw.demonstrations.faithful import FaithfulConfig
 from drake_screw.demonstrations.regions import Regions
 from drake_screw.screws import (
@@ -157,7 +157,7 @@ def deviations(samples: Array, track: Array, config: FaithfulConfig) -> tuple[Ar
     return translation_distance(samples, track[at]), rotation_angle(samples, track[at])
 
 
-@njit(cache=True)
+@cached_njit()
 def _in_order(
     p: Array, q: Array, P: Array, Q: Array, position_tolerance: float, rotation_tolerance: float
 ) -> NDArray[np.int64]:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from drake_screw.compile_cache import cached_njit
 from drake_screw.demonstrations.adjustment import adjusted
 from drake_screw.demonstrations.fewest_screws import fewest_screws
 from drake_screw.demonstrations.regions import Regions, regions_of_interest
@@ -239,7 +239,7 @@ def thin(X_WE: Array, spacing: float, turn_spacing: float) -> NDArray[np.int64]:
     return kept
 
 
-@njit(cache=True)
+@cached_njit()
 def _thin(p: Array, q: Array, spacing: float, turn_spacing: float) -> NDArray[np.int64]:
     least = np.cos(0.5 * turn_spacing) if turn_spacing < np.pi else -1.0
     kept = [0]

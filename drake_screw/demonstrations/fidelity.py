@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from drake_screw.compile_cache import cached_njit
 from drake_screw.demonstrations.deviations import (
     Deviations,
     deviations_from_screws,
@@ -147,7 +147,7 @@ def turn(X_WE: Array, least: float) -> float:
     return float(_turn(q, least))
 
 
-@njit(cache=True)
+@cached_njit()
 def _turn(q: Array, least: float) -> float:
     total, farthest, angle = 0.0, 0, 0.0
     anchor = 0

@@ -11,6 +11,7 @@ from drake_screw.demonstrations.baxter_csv import csv_text, read_csv, read_rows
 from drake_screw.demonstrations.hand_poses import checked_hand, hand_csv, read_hand_csv
 from drake_screw.demonstrations.recording import Recording, checked
 from drake_screw.errors import RecordingError, counted
+from drake_screw.files import printable
 from drake_screw.screws import normalized
 from drake_screw.typing import Array, PathLike
 
@@ -53,7 +54,7 @@ def read_recording(
     t, q, lines = read_csv(folder / JOINTS, joint_names)
     X_WO = _poses_of(folder, objects)
     recording = Recording(
-        folder.name,
+        printable(folder.name),
         tuple(joint_names),
         t,
         q,
@@ -202,7 +203,7 @@ def _of_hand(folder: Path, objects: int | None) -> Recording:
     t, X_WE, lines = read_hand_csv(file)
     X_WO = _poses_of(folder, objects)
     recording = Recording(
-        folder.name,
+        printable(folder.name),
         (),
         t,
         np.zeros((len(t), 0)),

@@ -18,15 +18,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from drake_screw.compile_cache import cached_njit
 from drake_screw.typing import Array
 
 LARGEST_TURN = 3.0  # rad; at pi a screw between two poses is no longer the only one
 _LEAST_STEP = 0.01
 
 
-@njit(cache=True)
+@cached_njit()
 def search(
     p: Array,
     q: Array,
@@ -86,7 +86,7 @@ def search(
     return screws, before
 
 
-@njit(cache=True)
+@cached_njit()
 def poses_on_screws(p: Array, q: Array, count: int) -> tuple[Array, Array]:
     """Poses evenly, by the screw parameter, on the constant screws from each pose to the next.
 
@@ -120,7 +120,7 @@ def poses_on_screws(p: Array, q: Array, count: int) -> tuple[Array, Array]:
     return P, Q
 
 
-@njit(cache=True)
+@cached_njit()
 def _screw(p: Array, q: Array, a: int, b: int) -> tuple[Any, ...]:
     """The constant screw from pose a to pose b.
 
@@ -152,7 +152,7 @@ def _screw(p: Array, q: Array, a: int, b: int) -> tuple[Any, ...]:
     )  # fmt: skip
 
 
-@njit(cache=True)
+@cached_njit()
 def _first_missed(
     p: Array,
     q: Array,

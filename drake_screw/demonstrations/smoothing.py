@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from drake_screw.compile_cache import cached_njit
 from drake_screw.screws import pose, quaternion_from_rotation, rotation_from_quaternion
 from drake_screw.typing import Array
 
@@ -33,7 +33,7 @@ def smoothed(X_WE: Array, t: Array) -> Array:
     return pose(rotation_from_quaternion(values[:, 3:]), values[:, :3])
 
 
-@njit(cache=True)
+@cached_njit()
 def _parabolas(values: Array, t: Array, window: float) -> Array:
     m, n = values.shape
     result = values.copy()

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 
+from drake_screw.compile_cache import cached_njit
 from drake_screw.typing import Array
 
 UNBOUNDED = 1e12
@@ -95,7 +95,7 @@ def fastest(
     return Law(s, x)
 
 
-@njit(cache=True, error_model="numpy")
+@cached_njit(error_model="numpy")
 def _lower(x: Array, h: Array, a: Array, b: Array) -> None:
     """Lower bounds of x (m,), in place, to what the fastest law has.
 

@@ -38,8 +38,9 @@ def plain(record: RunRecord | Certificate | SuggestionRecord) -> dict[str, Any]:
 
 
 def json_text(record: RunRecord | Certificate | SuggestionRecord) -> str:
-    """A record as the text of a JSON file."""
-    return json.dumps(plain(record), indent=2) + "\n"
+    """A record as the text of a JSON file; of a path that is no UTF-8, ? for what is none."""
+    text = json.dumps(plain(record), indent=2, ensure_ascii=False)
+    return text.encode("utf-8", "replace").decode() + "\n"
 
 
 def read_run_record(file: Path) -> RunRecord:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, TextIO
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.demonstrations import Fidelity, Recording, write_recording
@@ -58,10 +58,11 @@ class RunDirectory:
         Raises:
             RunDirectoryError: the place is taken or cannot be written.
         """
-        path = path or fresh_folder(Path("runs") / record.scenario)
-        directory = cls(path, record)
-        with writing(path, remedy="Choose a folder you may write to with --output."):
+        runs = Path("runs") / record.scenario
+        with writing(path or runs, remedy="Choose a folder you may write to with --output."):
+            path = fresh_folder(runs) if path is None else path
             make_folder(path, "run")
+            directory = cls(path, record)
             write_text(path / SCENARIO, scenario_text)
             directory.save()
         return directory
@@ -99,7 +100,7 @@ class RunDirectory:
         """Append lines to the log, each with the time."""
         stamp = now()
         file = self.path / LOG
-        with writing(file, UNWRITABLE_RUN), file.open("a", encoding="utf-8") as log:
+        with writing(file, UNWRITABLE_RUN), _appending(file) as log:
             log.writelines(f"{stamp} {line}\n" for line in text.splitlines())
 
     def add_demonstration(
@@ -148,6 +149,10 @@ class RunDirectory:
     def round_folder(self, round: int) -> Path:
         """Folder of a round; the first is round_01."""
         return self.path / f"round_{round + 1:02d}"
+
+
+def _appending(file: Path) -> TextIO:
+    return file.open("a", encoding="utf-8", errors="backslashreplace")
 
 
 def versions() -> dict[str, str]:

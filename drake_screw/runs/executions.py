@@ -125,10 +125,15 @@ def execute(
                 )
             (folder / "executions.html").write_text(page)
 
-    folder = fresh_folder(opened.directory.path / "executions")
+    parent = opened.directory.path / "executions"
     remedy = "Executions are written beside the run; make its folder writable."
-    with writing(folder, remedy):
-        write_folder(folder, fill)
+    with writing(parent, remedy):
+        folder = fresh_folder(parent)
+        try:
+            write_folder(folder, fill)
+        except BaseException:
+            folder.rmdir()
+            raise
     return Executions(folder, _assumed(setup), found)
 
 

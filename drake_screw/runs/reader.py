@@ -32,6 +32,10 @@ from drake_screw.visualization.browsing import Catalogue, catalogue
 from drake_screw.visualization.rounds import cells
 
 
+class DamagedRound(RunDirectoryError):
+    """The instances of a round are missing, or cannot be read."""
+
+
 class RunReader:
     """What the directory of a run holds, finished or still growing. It writes nothing.
 
@@ -132,7 +136,8 @@ class RunReader:
         """The instances of a round, and what it found.
 
         Raises:
-            RunDirectoryError: they are missing, damaged, or do not belong to the scenario.
+            DamagedRound: they are missing, or damaged.
+            RunDirectoryError: they do not belong to the scenario.
         """
         entry = self.directory.record.rounds[round]
         file = self.directory.round_folder(round) / INSTANCES
@@ -144,7 +149,7 @@ class RunReader:
             if entry.demonstrations != D:
                 raise ValueError(f"it has outcomes of {D} demonstrations, not as run.json says")
         except FileNotFoundError as error:
-            raise RunDirectoryError(
+            raise DamagedRound(
                 f"round {round + 1} is damaged: the file is missing", remedy=REMEDY, file=file
             ) from error
         except (
@@ -157,7 +162,7 @@ class RunReader:
             zlib.error,
         ) as error:
             words = f"no {error}" if isinstance(error, KeyError) else str(error).split(". ")[0]
-            raise RunDirectoryError(
+            raise DamagedRound(
                 f"round {round + 1} is damaged: {words}", remedy=REMEDY, file=file
             ) from error
         K = evaluation.partition(self.setup.regions).K

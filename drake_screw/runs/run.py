@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,11 +18,11 @@ from drake_screw.acquisition import (
     RoundFinished,
     Status,
 )
-from drake_screw.acquisition.loop import initial_places
 from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.holding import holding
 from drake_screw.runs.begun_with import (
     check_models,
     check_parts,
@@ -32,6 +33,7 @@ from drake_screw.runs.certificate import Certificate, certificate
 from drake_screw.runs.codec import FORMAT
 from drake_screw.runs.directory import PICTURE, SCENARIO, RunDirectory, now, versions
 from drake_screw.runs.html import certificate_html, run_html
+from drake_screw.runs.mending import drop_damaged, find_damage
 from drake_screw.runs.narration import describe
 from drake_screw.runs.reader import RunReader
 from drake_screw.runs.records import RunRecord
@@ -114,10 +116,16 @@ class Run:
             Events; the last is `Finished`.
 
         Raises:
-            RunDirectoryError: the run was begun with parts that were passed in from Python, and
-                that it lacks now; or OMPL, which decides on plans, was there and is not, or the
-                other way round.
+            RunDirectoryError: another process is at work on the run; or it was begun with parts
+                that were passed in from Python, and that it lacks now; or OMPL, which decides on
+                plans, was there and is not, or the other way round.
         """
+        with holding(self.directory.path, "run"):
+            yield from self._carried_out(listeners)
+
+    def _carried_out(self, listeners: Sequence[Listener]) -> Iterator[Event]:
+        self.directory.refresh()
+        drop_damaged(self.reader)
         check_parts(self.setup, self.directory)
         check_ways_around(self.setup, self.directory.record.led_around, "run", self.directory.path)
 
@@ -136,8 +144,9 @@ class Run:
             if self.directory.record.status is Status.RUNNING:
                 interrupted = isinstance(error, KeyboardInterrupt | GeneratorExit)
                 reason = "interrupted" if interrupted else f"{type(error).__name__}: {error}"
-                self.directory.save(status=Status.INTERRUPTED, reason=reason)
-                self.directory.log(reason)
+                with suppress(RunDirectoryError):  # what ended it is what its user has to know
+                    self.directory.save(status=Status.INTERRUPTED, reason=reason)
+                    self.directory.log(reason)
             raise
 
     def replay(self) -> Iterator[Event]:
@@ -162,7 +171,9 @@ class Run:
 
                 self.directory.add_round(event, lambda e, stem: draw_round(self.setup, e, stem))
         elif isinstance(event, Finished):
-            draw_all(self)
+            from drake_screw.runs.redrawing import draw_all
+
+            draw_all(self.reader)
             rounds = self.directory.record.rounds
             self.directory.save(
                 status=event.status,
@@ -265,35 +276,13 @@ def resumable(run: Run) -> Run:
     """The run itself, if there is something left of it to do.
 
     Raises:
-        RunDirectoryError: it has ended.
+        RunDirectoryError: it has ended, and all of it can be read.
     """
     record = run.directory.record
-    if record.ended:
+    if record.ended and find_damage(run.reader) is None:
         raise RunDirectoryError(
             f"this run has ended ({record.status}); there is nothing to resume",
             remedy=f"See it with: drake-screw report {run.directory.path}",
             file=run.directory.path,
         )
     return run
-
-
-def redraw(run: Run, *, svg: bool = False) -> None:
-    """Draw the pictures of all rounds, and of the whole run, again; with `svg` as SVG, too."""
-    from drake_screw.runs.pictures import draw_round
-
-    for event in run.reader.all_rounds():
-        stem = run.directory.round_folder(event.round) / "heat_map"
-        draw_round(run.setup, event, stem, svg=svg)
-    draw_all(run, svg=svg)
-
-
-def draw_all(run: Run, *, svg: bool = False) -> None:
-    """Draw the pictures of a whole run; where it has no round, the place that was asked for."""
-    from drake_screw.runs.pictures import draw_run
-
-    reader, wanted = run.reader, run.setup.scenario.demonstrations.initial
-    number, asked = len(run.directory.record.demonstrations), None
-    if reader.rounds == 0 and isinstance(wanted, int) and number < wanted:
-        seed, regions = run.setup.scenario.seed, run.setup.regions
-        asked = initial_places(regions, seed, number, run.setup.first)[0].x_y_yaw
-    draw_run(run.setup, reader.all_rounds(), run.directory.path, asked=asked, svg=svg)

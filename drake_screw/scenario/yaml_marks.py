@@ -83,6 +83,7 @@ def plain(node: Node) -> Any:
 
 
 _TAG = "tag:yaml.org,2002:"
+_NO_CHARACTER = re.compile(r"\\U(?!000|0010)[0-9a-fA-F]{8}")
 _FLOAT = re.compile(
     r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|[-+]?\.(inf|Inf|INF)$|\.(nan|NaN|NAN)$"
 )
@@ -157,6 +158,11 @@ def parse(text: str, place: Place) -> Node | None:
             f"Found {error.context} that starts in line {since}."
             if error.context and since and place.file
             else None,
+        ) from None
+    except ValueError:  # of chr()
+        line = next((i for i, t in enumerate(text.splitlines(), 1) if _NO_CHARACTER.search(t)), 1)
+        raise _at(place, line).error(
+            r"not valid YAML: \U... stands for no character", r"The last one is \U0010FFFF."
         ) from None
     except RecursionError:
         raise place.error("not usable: nested too deeply, or an alias of itself") from None

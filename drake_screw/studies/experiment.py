@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -21,8 +21,52 @@ from drake_screw.acquisition import (
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.errors import ScenarioError
-from drake_screw.scenario.schema import Scenario
+from drake_screw.scenario.schema import MOST_REGIONS, Scenario
 from drake_screw.tasks import AXES, GridRegions, WorkArea, grid_regions
+
+MOST_RUNS = 10_000_000
+"""Of a study, for all numbers of regions together."""
+
+
+def numbers_of_regions(text: str) -> tuple[int, ...]:
+    """Reads ``1,2,4,8,16``.
+
+    Raises:
+        ScenarioError: it is not such a list, or a number is not from 1 to MOST_REGIONS.
+    """
+    try:
+        numbers = tuple(int(part) for part in text.split(","))
+    except ValueError as error:
+        raise ScenarioError(
+            f"'{text}' is not a list of numbers of regions", remedy="Write, say, 1,2,4,8,16."
+        ) from error
+    for K in numbers:
+        if not 1 <= K <= MOST_REGIONS:
+            raise ScenarioError(
+                f"{K:,} regions; a grid has 1 to {MOST_REGIONS:,}",
+                remedy="Write smaller numbers; every round draws in each region.",
+            )
+    return numbers
+
+
+def check_runs(runs: int, regions: Sequence[int]) -> None:
+    """Refuse a study that would not end in a lifetime.
+
+    Raises:
+        ScenarioError: there are no runs, or too many.
+    """
+    total = runs * len(regions)
+    if total < 1:
+        raise ScenarioError(
+            f"{runs} runs for {len(regions)} numbers of regions",
+            remedy="Give at least one run, and one number of regions.",
+        )
+    if total > MOST_RUNS:
+        raise ScenarioError(
+            f"{total:,} runs, of which a study has {MOST_RUNS:,} at most",
+            remedy=f"At a second each they would take {total / 31_557_600:,.1f} years of one "
+            "processor; a thousand for each number of regions tell a mean to a few per cent.",
+        )
 
 
 def split(area: WorkArea, K: int) -> GridRegions:

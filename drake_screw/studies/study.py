@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
@@ -26,12 +27,13 @@ from drake_screw.files import (
     write_text,
     writing,
 )
+from drake_screw.holding import holding
 from drake_screw.processes import WorkerLost, share_out
 from drake_screw.runs.begun_with import check_ways_around
 from drake_screw.runs.directory import SCENARIO, now, versions
 from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
-from drake_screw.studies.experiment import Experiment, StudyRun, split
+from drake_screw.studies.experiment import Experiment, StudyRun, check_runs, split
 from drake_screw.studies.figures import Distribution, save_distributions
 from drake_screw.studies.hidden_failures import draw_hidden_failure
 from drake_screw.studies.table import HEADER, read_runs, row, summary_csv
@@ -90,9 +92,14 @@ class Study:
             Each run as it is finished.
 
         Raises:
-            RunDirectoryError: the table is damaged or cannot be written, a process was killed, or
+            RunDirectoryError: the table is damaged or cannot be written, another process is at work
+                on the study, one that shared the work was killed, or
                 runs are missing and OMPL is installed where it was not, or is not where it was.
         """
+        with holding(self.path, "study"):
+            yield from self._carried_out(workers)
+
+    def _carried_out(self, workers: int | None) -> Iterator[StudyRun]:
         finished = self.finished_runs()
         table = self.path / RUNS
         done = {(run.K, run.run) for run in finished}
@@ -112,7 +119,8 @@ class Study:
                     yield run
             self._conclude()
         except BaseException:
-            self._save("interrupted")
+            with suppress(RunDirectoryError):  # what ended it is what its user has to know
+                self._save("interrupted")
             raise
 
     def summary(self) -> dict[int, Distribution]:
@@ -180,11 +188,7 @@ def new_study(
     Raises:
         DrakeScrewError: something cannot be used; nothing is written then.
     """
-    if runs < 1 or not regions:
-        raise ScenarioError(
-            f"{runs} runs for {len(regions)} numbers of regions",
-            remedy="Give at least one run, and one number of regions.",
-        )
+    check_runs(runs, regions)
     if scenario.teacher.kind == "interactive":
         raise ScenarioError(
             "teacher.kind: an interactive teacher would be asked in every run of a study",
@@ -197,7 +201,6 @@ def new_study(
     for part in (setup.strategy, setup.teacher, setup.ask, setup.initial):
         assert part is not None
     model = setup.workcell.model_file
-    path = fresh_folder(Path("studies") / scenario.name) if output is None else Path(output)
     record = {
         "format": FORMAT,
         "scenario": scenario.name,
@@ -213,7 +216,10 @@ def new_study(
         "started": now(),
         "finished": None,
     }
-    with writing(path, remedy="Choose a folder you may write to with --output."):
+    studies = Path("studies") / scenario.name
+    place = studies if output is None else Path(output)
+    with writing(place, remedy="Choose a folder you may write to with --output."):
+        path = fresh_folder(studies) if output is None else Path(output)
         make_folder(path, "study")
         write_text(path / SCENARIO, dump_scenario(scenario))
         write_text(path / RUNS, csv_text([HEADER]))
@@ -273,20 +279,6 @@ def _hashes(setup: PlanningSetup) -> dict[str, str]:
     """Of what was read of the robot's model, and of the meshes around it."""
     others = {name: file_hash(file) for name, file in (setup.srdf | setup.meshes).items()}
     return {"model": setup.workcell.model.hash} | others
-
-
-def numbers_of_regions(text: str) -> tuple[int, ...]:
-    """Reads ``1,2,4,8,16``.
-
-    Raises:
-        ScenarioError: it is not such a list.
-    """
-    try:
-        return tuple(int(part) for part in text.split(","))
-    except ValueError as error:
-        raise ScenarioError(
-            f"'{text}' is not a list of numbers of regions", remedy="Write, say, 1,2,4,8,16."
-        ) from error
 
 
 def _experiment(scenario: Path) -> Experiment:

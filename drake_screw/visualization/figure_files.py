@@ -9,6 +9,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
+from drake_screw.files import write_bytes
 from drake_screw.visualization.palette import PAPER
 
 _SVG = {"svg.hashsalt": "drake_screw", "svg.fonttype": "path"}
@@ -21,13 +22,23 @@ def save_figure(figure: Figure, stem: str | Path, *, svg: bool = False) -> tuple
 
     Returns:
         The files.
+
+    Raises:
+        OSError: they cannot be written.
     """
     png, drawing = Path(f"{stem}.png"), Path(f"{stem}.svg")
-    figure.savefig(png, dpi=160, metadata={"Software": None}, facecolor=PAPER)
+    write_bytes(png, png_bytes(figure))
     if not svg:
         return (png,)
-    drawing.write_bytes(_svg(figure))
+    write_bytes(drawing, _svg(figure))
     return png, drawing
+
+
+def png_bytes(figure: Figure) -> bytes:
+    """A figure as PNG."""
+    picture = io.BytesIO()
+    figure.savefig(picture, dpi=160, metadata={"Software": None}, facecolor=PAPER)
+    return picture.getvalue()
 
 
 def figure_address(figure: Figure) -> str:

@@ -20,6 +20,7 @@ from pydrake.perception import BaseField, Fields, PointCloud
 from pydrake.planning import RobotDiagramBuilder
 
 from drake_screw.demonstrations import Demonstration
+from drake_screw.files import write_text
 from drake_screw.planning import Cause
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.robot.parts import add_robot, add_surroundings
@@ -162,7 +163,7 @@ class Scene:
             slides = list(self._slides.values())
             page = with_legend(page, slides, self._shown, scenario=self._scenario)
         path = Path(path)
-        path.write_text(page, encoding="utf-8")
+        write_text(path, page)
         return path
 
     def _hide_rounds(self) -> None:

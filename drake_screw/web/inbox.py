@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from drake_screw.demonstrations.library import JOINTS, OBJECTS
 from drake_screw.errors import RecordingError
+from drake_screw.holding import holding
 
 PERIOD = 1.0
 """s. Between looks into the folder; a recording that changed since then is still growing."""
@@ -32,12 +33,14 @@ class Inbox:
         self._taken = dict(self._recordings())
         self._changed: dict[Path, tuple[_Files, float]] = {}
         self._looked = 0.0
+        self._held = ExitStack()
 
-    def make(self) -> None:
-        """Make the folder, if there is none.
+    def open(self) -> None:
+        """Make the folder, if there is none, and keep other processes from watching it, too.
 
         Raises:
             RecordingError: it cannot be made.
+            RunDirectoryError: another process watches it.
         """
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -47,6 +50,11 @@ class Inbox:
                 remedy="Give another teacher.folder, one that can be made.",
                 file=self.folder,
             ) from error
+        self._held.enter_context(holding(self.folder, "watched folder"))
+
+    def close(self) -> None:
+        """Let other processes watch the folder."""
+        self._held.close()
 
     def take(self) -> Path | None:
         """The folder of a recording that was dropped and has stopped growing; None if none has.

@@ -73,11 +73,12 @@ class TeachingPage:
         Raises:
             DrakeScrewError: it cannot be served.
             RecordingError: the watched folder cannot be made.
+            RunDirectoryError: another process watches it.
         """
         if self._server is not None:
             return self.url
         if self._inbox is not None:
-            self._inbox.make()
+            self._inbox.open()
         setup, meshcat = self._setup, page_meshcat(self._host)
         self._scene = make_scene(setup, meshcat)
         self._inspector = Inspector(meshcat, setup.workcell, setup.objects)
@@ -141,6 +142,8 @@ class TeachingPage:
         """Stop serving the page."""
         if self._server is not None:
             self._server.close()
+        if self._inbox is not None:
+            self._inbox.close()
 
     def _show_idle(self, headline: str) -> None:
         """Show that nobody is asked for anything just now."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import pytest
 from drake_screw.acquisition import Evaluation, RoundFinished
 from drake_screw.bandits import Verdict
 from drake_screw.errors import RunDirectoryError
+from drake_screw.files import printable, write_text
 from drake_screw.planning import Outcomes
 from drake_screw.runs.codec import json_text, load_evaluation, read_run_record, save_evaluation
 from drake_screw.runs.records import RoundRecord
@@ -144,3 +146,14 @@ def test_damage_is_named_with_its_place(finished_run, tmp_path, damage, expected
         read_run_record(tmp_path / "run.json")
     assert expected in error.value.message
     assert error.value.file == tmp_path / "run.json"
+
+
+def test_names_of_files_that_are_no_utf_8_are_written_as_they_can_be(
+    finished_run: Path, tmp_path: Path
+) -> None:
+    """Linux takes any bytes for a name; Python has those that are no UTF-8 as lone surrogates."""
+    name = os.fsdecode(b"d\xffmo")
+    assert printable(name) == r"d\xffmo"
+    record = replace(read_run_record(finished_run / "run.json"), model=name)
+    write_text(tmp_path / "run.json", json_text(record))
+    assert read_run_record(tmp_path / "run.json").model == "d?mo"

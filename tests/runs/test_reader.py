@@ -20,7 +20,8 @@ from drake_screw.acquisition import (
 from drake_screw.errors import RunDirectoryError
 from drake_screw.planning import BatchPlanner
 from drake_screw.runs.narration import describe
-from drake_screw.runs.run import Run, new_run, open_run, redraw
+from drake_screw.runs.redrawing import redraw
+from drake_screw.runs.run import Run, new_run, open_run
 from drake_screw.scenario.loader import load_scenario
 from tests.small_runs import CHANGES, finished_run
 
@@ -86,7 +87,7 @@ def test_nothing_is_planned_again_to_replay_and_draw(finished_run, tmp_path, mon
     monkeypatch.setattr(BatchPlanner, "all_outcomes", never)
     run = open_run(copy)
     assert sum(isinstance(event, RoundFinished) for event in run.replay()) == 2
-    redraw(run)
+    redraw(run.reader)
     assert (copy / "rounds.png").stat().st_size > 0
 
 

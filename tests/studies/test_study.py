@@ -17,7 +17,7 @@ from drake_screw.demonstrations import write_recording
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.planning import connection
 from drake_screw.scenario.loader import load_scenario
-from drake_screw.studies.experiment import Experiment, run_seed, split
+from drake_screw.studies.experiment import Experiment, numbers_of_regions, run_seed, split
 from drake_screw.studies.hidden_failures import EACH, find_hidden_failures
 from drake_screw.studies.study import (
     RUNS,
@@ -25,7 +25,6 @@ from drake_screw.studies.study import (
     SUMMARY,
     Study,
     new_study,
-    numbers_of_regions,
     open_study,
 )
 from drake_screw.tasks import ObjectArea, WorkArea

@@ -77,7 +77,7 @@ def test_what_lay_there_before_is_not_taken(tmp_path, clock) -> None:
 def test_a_folder_may_come_into_being_later(tmp_path, clock) -> None:
     inbox = Inbox(tmp_path / "deep" / "inbox")
     assert take(inbox, clock) is None
-    inbox.make()
+    inbox.open()
     demo = drop(inbox.folder / "demo", JOINTS, OBJECTS)
     assert take(inbox, clock) is None
     assert take(inbox, clock) == demo

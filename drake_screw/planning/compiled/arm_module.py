@@ -10,6 +10,7 @@ import hashlib
 import importlib.util
 import os
 import platform
+import shutil
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -45,13 +46,12 @@ _TEXT = '''"""Plans of one arm, on blocks of lanes; written by drake_screw.plann
 The arm's programs (aim, blend_1, ...) are put in here before this text is run.
 """
 
-from numba import njit
-
+from drake_screw.compile_cache import cached_njit
 from drake_screw.planning.compiled.lanes import begin_plan, next_unit, save_start, settle
 from drake_screw.planning.compiled.rows import LANES
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@cached_njit(nogil=True, error_model="numpy")
 def prepare(b, rows, q_start, start):
     """Fills start with what `arrive` says of the start configuration (n,)."""
     for j in range(len(q_start)):
@@ -61,7 +61,7 @@ def prepare(b, rows, q_start, start):
     save_start(b, 0, rows, start)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@cached_njit(nogil=True, error_model="numpy")
 def run(b, lanes, queue, units, rows, problem, answers):
     """Works through all units of work."""
     for i in range(LANES):
@@ -114,7 +114,9 @@ def load(programs: Sequence[Program]) -> ModuleType:
     if name in sys.modules:
         return sys.modules[name]
     path = cache_folder() / f"{name}.py"
-    if not path.exists() or path.read_text() != _TEXT:
+    if path.is_dir():
+        shutil.rmtree(path)
+    if not path.exists() or path.read_bytes() != _TEXT.encode():
         with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as file:
             file.write(_TEXT)
         os.chmod(file.name, 0o644)

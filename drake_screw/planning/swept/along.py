@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from drake_screw.compile_cache import cached_njit
 from drake_screw.files import cache_folder
 from drake_screw.planning.compiled import functions
 from drake_screw.planning.compiled import inner as inner_module
@@ -90,7 +90,7 @@ def _end(room, i, found):  # type: ignore[no-untyped-def]
 def _compiled(text: str) -> Any:
     """`touches_along`, compiled from a text of that hash."""
 
-    @njit(error_model="numpy", nogil=True, cache=True)
+    @cached_njit(error_model="numpy", nogil=True)
     def steps(cell, room, q, first, X_WO, found):  # type: ignore[no-untyped-def]
         if text == "":
             return

@@ -1,0 +1,45 @@
+"""What ends the program from outside: Ctrl-C, SIGTERM, and a terminal that goes away (SIGHUP)."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+INTERRUPTED = 130
+"""Exit code."""
+
+_ENDINGS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """A context in which each of the signals interrupts what goes on, as Ctrl-C does.
+
+    So a run says that it was interrupted. Once more, and the program ends at once; whatever it
+    writes appears whole or not at all even so. Signals that are ignored, as by nohup, stay so.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    handled = [each for each in _ENDINGS if signal.getsignal(each) is not signal.SIG_IGN]
+    before = {each: signal.signal(each, _interrupt) for each in handled}
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)
+
+
+def _interrupt(_: int, __: FrameType | None) -> None:
+    for each in _ENDINGS:
+        if signal.getsignal(each) is _interrupt:
+            signal.signal(each, _end)
+    raise KeyboardInterrupt
+
+
+def _end(_: int, __: FrameType | None) -> None:
+    os._exit(INTERRUPTED)
