@@ -29,7 +29,7 @@ class Evaluation:
     """The instances of one round and what planning made of them.
 
     Attributes:
-        x_y_yaw: (N, k, 3) m, m, rad.
+        x_y_yaw: (N, k, c) m and rad, in the order of `WorkArea.axes`.
         region: (N,) the region each was drawn in.
         outcomes: (N, D), one column for each demonstration in hand.
         frontier: the cells of the tree in which the round ended, where the partition refines
@@ -60,7 +60,7 @@ class Suggestion:
 
     Attributes:
         region: the region that needs it.
-        x_y_yaw: (k, 3) the instance to demonstrate at.
+        x_y_yaw: (k, c) the instance to demonstrate at.
         segment: screw segment, from 0, in which the best attempt there failed; None where there
             was no attempt (an initial demonstration).
         regions: what `region` counts; None for the run's own partition.

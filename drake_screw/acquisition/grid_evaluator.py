@@ -67,8 +67,8 @@ class _Pulls:
         self._demonstrations = demonstrations
         K = evaluator.regions.K
         self._samples, self._failures = np.zeros(K, dtype=np.int64), np.zeros(K, dtype=np.int64)
-        k = len(evaluator.regions.area.objects)
-        self._x_y_yaw: list[Array] = [np.empty((0, k, 3))]
+        none = np.empty((0, *evaluator.regions.area.lower.shape))
+        self._x_y_yaw: list[Array] = [none]
         self._region: list[NDArray[np.int64]] = [np.empty(0, dtype=np.int64)]
         self._outcomes: list[Outcomes] = [self._plan(self._x_y_yaw[0])]
 

@@ -76,8 +76,8 @@ class RecordedTeacher:
             used_up = "the only recording is" if n == 1 else f"all {n} recordings are"
             return Lesson(None, f"{used_up} used")
         there = [r.X_WO if self.foreign is None else self.foreign.seen(r) for r in left]
-        places = self.regions.area.x_y_yaw(np.stack(there))
-        away = np.linalg.norm(places[..., :2] - suggestion.x_y_yaw[..., :2], axis=-1).sum(axis=-1)
+        places = self.regions.area.coordinates(np.stack(there))
+        away = self.regions.area.away(places, suggestion.x_y_yaw)
         gained = self._gained(left, used, suggestion)
         if gained.any():
             chosen = int(np.lexsort((away, -gained))[0])

@@ -9,7 +9,7 @@ from drake_screw.acquisition.grid_evaluator import BATCH, Progress
 from drake_screw.bandits import Cell, CertifyOrSplit, TreeVerdict, Verdict, cell_number
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Outcomes, Planner, concatenate
-from drake_screw.tasks import WorkArea, free_axes, from_unit_box, uniform
+from drake_screw.tasks import WorkArea, from_unit_box, uniform
 from drake_screw.typing import Array
 
 
@@ -40,7 +40,7 @@ class TreeEvaluator:
         seed: int,
         progress: Progress | None = None,
     ) -> None:
-        free = int(free_axes(area).sum())
+        free = int(area.free.sum())
         if tree.dimension != free:
             raise ValueError(f"the tree has {tree.dimension} axes, the work area {free} free ones")
         self._planner = planner

@@ -66,8 +66,7 @@ def execute(
         run: its directory.
         per_region: executions in every region; instances without a plan are drawn again, and
             reported.
-        instance: execute this one instead: {object: (x, y[, yaw])}, or the numbers of all objects
-            in their order, as `placed` takes them.
+        instance: execute this one instead: {object: (x, y[, yaw])}, or as `placed` takes them.
         workers: processes; as many as processors if None.
 
     Raises:

@@ -29,7 +29,7 @@ from drake_screw.runs.codec import REMEDY, load_evaluation
 from drake_screw.runs.directory import INSTANCES, SCENARIO, RunDirectory
 from drake_screw.visualization.attempt import Attempt, attempt, collided
 from drake_screw.visualization.browsing import Catalogue, catalogue
-from drake_screw.visualization.rounds import cells
+from drake_screw.visualization.cells import cells
 
 
 class RunReader:
@@ -277,7 +277,7 @@ class RunReader:
     def _catalogue(self, round: int) -> Catalogue:
         event = self.event(round)
         drawn = cells(event.regions, event.verdict.estimates)
-        return catalogue(event, event.evaluation.region, drawn.object)
+        return catalogue(event, event.evaluation.region, drawn.axes)
 
     def _lacks(self, what: str) -> RunDirectoryError:
         return self._odd(f"{what} is missing")

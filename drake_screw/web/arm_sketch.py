@@ -76,8 +76,10 @@ def _view(
     things = outlines(obstacles, P)
     parts += [_polygon(seen.corners, _STONE) for seen in things]
     if not upright:
-        for item in area.objects:
+        for i, item in enumerate(area.objects):
             low, high = np.array([*item.lower[:2], 0.0]), np.array([*item.upper[:2], 0.0])
+            X_WP = area.X_WP(i)
+            low, high = (X_WP[:3, :3] @ p + X_WP[:3, 3] for p in (low, high))
             parts.append(_box(P @ low, P @ high, "none", INK))
     for shape, X in zip(objects, attempt.X_WO, strict=True):
         x, y = 1e3 * (P @ X[:3, 3])

@@ -87,7 +87,7 @@ def panel_state(
         "selected": selection.demonstration,
         "headline": round_headline(event),
         "map": work_area_map(event, regions, here=here, things=outlines(reader.setup.obstacles)),
-        "map_words": map_words(event, sample(event.evaluation, MOST_DOTS)),
+        "map_words": map_words(event, sample(event.evaluation, MOST_DOTS), regions),
     }
 
 
@@ -183,12 +183,8 @@ def describe_instance(reader: RunReader, selection: Selection) -> str:
 
 
 def where(area: WorkArea, x_y_yaw: Array) -> str:
-    """Where the objects of an instance (k, 3) are, in words."""
-    return ", ".join(
-        f"{o.name} at x {x:.3f} m, y {y:.3f} m"
-        + (f", yaw {yaw:.2f} rad" if o.lower[2] != o.upper[2] else "")
-        for o, (x, y, yaw) in zip(area.objects, x_y_yaw.tolist(), strict=True)
-    )
+    """Where the objects of an instance (k, c) are, in words."""
+    return ", ".join(f"{o.name} at {area.words(i, x_y_yaw)}" for i, o in enumerate(area.objects))
 
 
 def _columns(X: Array) -> list[list[float]]:

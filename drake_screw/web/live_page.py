@@ -181,7 +181,7 @@ class LivePage:
             details=f"weakest region {weakest}: {event.regions.name(weakest)}; {verdict.reason}",
             color=color,
             map=work_area_map(event, event.regions, things=outlines(self._setup.obstacles)),
-            map_words=f"after round {number}; {map_words(event, shown)}",
+            map_words=f"after round {number}; {map_words(event, shown, event.regions)}",
             rounds=[*self._state["rounds"], line],
         )
 

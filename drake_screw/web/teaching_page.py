@@ -183,4 +183,5 @@ def interactive_teacher(setup: Setup) -> InteractiveTeacher:
     >>> type(Setup(scenario, teacher=interactive_teacher).teacher).__name__
     'InteractiveTeacher'
     """
-    return InteractiveTeacher(TeachingPage(setup, inbox=setup.scenario.teacher.folder))
+    page = TeachingPage(setup, inbox=setup.scenario.teacher.folder)
+    return InteractiveTeacher(page, setup.area)

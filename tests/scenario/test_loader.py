@@ -16,6 +16,7 @@ from drake_screw.demonstrations import FaithfulConfig, SegmentationConfig
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
 from drake_screw.scenario.loader import dump_scenario, load_scenario, load_stored_scenario
+from drake_screw.scenario.object_blocks import ObjectBlock
 from drake_screw.scenario.run_blocks import (
     AdaptiveBlock,
     CoverageBlock,
@@ -28,7 +29,6 @@ from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.segmentation_block import SegmentationBlock
 from drake_screw.scenario.values import Interval
 from drake_screw.scenario.workcell_blocks import (
-    ObjectBlock,
     RecordedOnBlock,
     RobotBlock,
     TableBlock,

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from drake_screw.bandits import STRATEGIES
 from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.object_blocks import ObjectBlock
 from drake_screw.scenario.problems import problems_of
 from drake_screw.scenario.run_blocks import (
     CoverageBlock,
@@ -22,7 +23,6 @@ from drake_screw.scenario.run_blocks import (
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.values import Interval
 from drake_screw.scenario.workcell_blocks import (
-    ObjectBlock,
     RecordedOnBlock,
     RobotBlock,
 )

@@ -22,8 +22,8 @@ AREAS = [WorkArea((BOWL,)), WorkArea((BOWL, CUP)), WorkArea((CUP, BOWL, ROUND))]
 def test_coordinates_are_recovered_from_the_poses(area: WorkArea, seed: int) -> None:
     rng = np.random.default_rng(seed)
     x_y_yaw = rng.uniform(area.lower, area.upper, (5, len(area.objects), 3))
-    np.testing.assert_allclose(area.x_y_yaw(area.X_WO(x_y_yaw)), x_y_yaw, atol=1e-14)
-    assert area.contains(area.x_y_yaw(area.X_WO(x_y_yaw))).all()
+    np.testing.assert_allclose(area.coordinates(area.X_WO(x_y_yaw)), x_y_yaw, atol=1e-14)
+    assert area.contains(area.coordinates(area.X_WO(x_y_yaw))).all()
 
 
 def test_pose_of_an_instance() -> None:
@@ -62,5 +62,5 @@ def test_leading_axes_are_carried(shape: tuple[int, ...]) -> None:
     x_y_yaw = np.broadcast_to(area.lower, (*shape, 2, 3))
     X_WO = area.X_WO(x_y_yaw)
     assert X_WO.shape == (*shape, 2, 4, 4)
-    assert area.x_y_yaw(X_WO).shape == (*shape, 2, 3)
+    assert area.coordinates(X_WO).shape == (*shape, 2, 3)
     assert area.contains(x_y_yaw).shape == shape

@@ -6,7 +6,8 @@ import pytest
 from drake_screw.bandits import Cell
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.tasks import BoxRegions, ObjectArea, WorkArea, box_regions, grid_regions
-from drake_screw.visualization.rounds import cells, details, headline, sample
+from drake_screw.visualization.cells import cells
+from drake_screw.visualization.rounds import details, headline, sample
 from tests.visualization.conftest import BOWL
 
 
