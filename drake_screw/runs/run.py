@@ -40,6 +40,7 @@ from drake_screw.runs.resuming import carry_on
 from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
+from drake_screw.visualization.cells import Axes
 
 Listener = Callable[[Event], None]
 """Is called with the events of a run, in their order."""
@@ -276,19 +277,19 @@ def resumable(run: Run) -> Run:
     return run
 
 
-def redraw(run: Run) -> None:
-    """Draw the pictures of all rounds, and of the whole run, again."""
+def redraw(run: Run, axes: Axes | None = None) -> None:
+    """Draw the pictures of all rounds, and of the whole run, again; heat maps along `axes`."""
     for event in run.reader.all_rounds():
         stem = run.directory.round_folder(event.round) / "heat_map"
-        draw_round(run.setup, event, stem)
-    draw_all(run)
+        draw_round(run.setup, event, stem, axes=axes)
+    draw_all(run, axes)
 
 
-def draw_all(run: Run) -> None:
+def draw_all(run: Run, axes: Axes | None = None) -> None:
     """Draw the pictures of a whole run; where it has no round, the place that was asked for."""
     reader, wanted = run.reader, run.setup.scenario.demonstrations.initial
     number, asked = len(run.directory.record.demonstrations), None
     if reader.rounds == 0 and isinstance(wanted, int) and number < wanted:
         seed, regions = run.setup.scenario.seed, run.setup.regions
         asked = initial_places(regions, seed, number, run.setup.first)[0].x_y_yaw
-    draw_run(run.setup, reader.all_rounds(), run.directory.path, asked=asked)
+    draw_run(run.setup, reader.all_rounds(), run.directory.path, asked=asked, axes=axes)

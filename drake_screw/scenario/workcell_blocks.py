@@ -55,7 +55,7 @@ class RobotBlock(Block):
     teacher, to exports and to executions"""
     ignore_collisions: Pairs = ()
     """pairs of links that may touch, [[left_finger, right_finger], ...]: whether they do is not
-    looked at. One of a pair may be `table` or an obstacle"""
+    looked at. One of a pair may be `table`, an obstacle or an object, one that is grasped say"""
     packages: Packages = Field(default={})
     """folders of packages that the model speaks of as `package://NAME/...` and that are not found
     by themselves"""

@@ -93,7 +93,7 @@ def test_shipped_scenarios_are_found_by_name(name: str) -> None:
     assert scenario.source is not None
     assert scenario.source.is_absolute()
     assert scenario.source.name == f"{name}.yaml"
-    assert scenario.cells == ((4, 4, 1),)
+    assert scenario.cells == ((4, 4, 1, 1, 1, 1),)
     assert scenario == load_scenario(scenario.source)
 
 
@@ -505,15 +505,15 @@ def test_overrides_replace_values_in_order(write: Callable[..., Path]) -> None:
     assert scenario.coverage == CoverageBlock(
         beta=0.85, epsilon=0.01, options={"batch": 10, "exact": True, "how": "far=near"}
     )
-    assert scenario.objects[0].z == -0.5
-    assert scenario.cells == ((5, 2, 3),)
+    assert scenario.objects[0].z == Interval(-0.5, -0.5)
+    assert scenario.cells == ((5, 2, 3, 1, 1, 1),)
     assert scenario.table is None
     assert scenario.robot.parked == {"c": 0.25}
 
 
 def test_override_reaches_keys_with_dots(write: Callable[..., Path]) -> None:
     file = write(("{x: 4, y: 2}", "{bowl.x: 4}"))
-    assert load_scenario(file, ["regions.grid.bowl.x=7"]).cells == ((7, 1, 1),)
+    assert load_scenario(file, ["regions.grid.bowl.x=7"]).cells == ((7, 1, 1, 1, 1, 1),)
 
 
 def test_override_paths_are_seen_from_the_working_directory(
@@ -542,7 +542,7 @@ def test_override_paths_are_seen_from_the_working_directory(
         ("objects.1.z=0", "no entry 1 in the list objects", "Entries: 0"),
         ("objects.bowl.z=0", "no entry bowl in the list objects", "Entries: 0"),
         ("robot.joints.2=c", "no entry 2 in the list robot.joints", "Entries: 0 to 1"),
-        ("objects.0.z=", "objects.0.z: expected a number, found nothing", None),
+        ("objects.0.z=", "objects.0.z: expected a number or [lower, upper], found nothing", None),
         ("coverage.epsilon=0.2", "coverage.epsilon: the run could never stop", None),
         ("robot={model: a}", "robot.joints: missing", None),
     ],

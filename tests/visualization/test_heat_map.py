@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from drake_screw.planning import Cause
 from drake_screw.tasks import ObjectArea, WorkArea, box_regions, grid_regions
 from drake_screw.visualization import draw_heat_map, heat_map_figure, save_heat_map
+from drake_screw.visualization.cells import cells
 from drake_screw.visualization.palette import UNKNOWN, failure_color
 from tests.visualization.conftest import BOWL
 
@@ -179,10 +180,42 @@ def test_stacks_and_the_drawn_object_are_stated(make_round) -> None:
         )
     )
     regions = grid_regions(area, {"bowl.x": 2, "bowl.yaw": 2})
-    ax = heat_map_figure(make_round(regions, [1, 2, 8, 0]), regions).axes[0]
-    assert any("worst of 2 regions; places of bowl" in " ".join(t.split()) for t in texts(ax))
-    assert {"0.800", "0.200"} <= set(texts(ax))
-    assert "0.100" not in texts(ax)
+    worst, mean = heat_map_figure(make_round(regions, [1, 2, 8, 0]), regions).axes[:2]
+    stated = "worst of 2 regions (left), and their mean (right), over bowl yaw and cup y; "
+    assert any(stated + "places of bowl" in " ".join(t.split()) for t in texts(worst))
+    assert {"0.800", "0.200"} <= set(texts(worst))
+    assert "0.100" not in texts(worst)
+    assert {"0.450", "0.100"} <= set(texts(mean))
+
+
+def test_axes_are_chosen_and_named(make_round) -> None:
+    area = WorkArea(
+        (
+            ObjectArea("bowl", (0.6, 0.0, 0.0), (1.0, 0.4, 0.0), z=(0.0, 0.3)),
+            ObjectArea("cup", (0.5, 0.6, 0.0), (0.5, 0.9, 0.0), 0.0),
+        )
+    )
+    regions = grid_regions(area, {"bowl.z": 3, "cup.y": 2})
+    event = make_round(regions, [1, 2, 8, 0, 0, 6])
+    ax = heat_map_figure(event, regions, axes=((0, 3), (1, 1))).axes[0]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("cup y in m", "bowl z in m")
+    assert (*ax.get_xlim(), *ax.get_ylim()) == pytest.approx((0.6, 0.9, 0.0, 0.3))
+    assert {"0.100", "0.200", "0.800", "0.600"} <= set(texts(ax))
+    assert any("averaged over bowl x and bowl y" in " ".join(t.split()) for t in texts(ax))
+    place = event.demonstrations[0].X_WO
+    np.testing.assert_allclose(marks(ax, "demonstration 1"), [[place[0, 2, 3], place[1, 1, 3]]])
+
+
+def test_a_mean_weighs_regions_by_their_share() -> None:
+    area = WorkArea((ObjectArea("bowl", (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), 0.0),))
+    boxes = box_regions(
+        area,
+        [[0, 0, 0], [0, 0, 0.25], [0, 0.5, 0.25]],
+        [[1, 1, 0.25], [1, 0.5, 1], [1, 1, 1]],
+    )
+    drawn = cells(boxes, np.array([0.4, 0.0, 0.8]))
+    np.testing.assert_allclose(drawn.mean, [0.1, 0.7])
+    assert np.isnan(cells(boxes, np.full(3, np.nan)).mean).all()
 
 
 def test_cells_of_different_sizes_are_drawn_as_they_are(ax, make_round, regions) -> None:
