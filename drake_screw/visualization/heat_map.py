@@ -6,8 +6,6 @@ x grows upwards, away from the robot; y grows to the left, as it does for the ro
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -19,14 +17,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
 
-from drake_screw.errors import listed
 from drake_screw.planning import Cause
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.cell_text import MARK, write_estimates
 from drake_screw.visualization.cells import Axes as PlaneAxes
 from drake_screw.visualization.cells import Cells, cells
-from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.outlines import Outline, draw_outlines, outline_handle, widened
 from drake_screw.visualization.palette import (
     ACCENT,
@@ -37,7 +33,7 @@ from drake_screw.visualization.palette import (
     failure_color,
     failure_map,
 )
-from drake_screw.visualization.rounds import Round, Sample, details, headline, sample
+from drake_screw.visualization.rounds import Round, Sample, sample
 
 MOST_DOTS = 1500
 SHAPES = {
@@ -100,78 +96,6 @@ def draw_heat_map(
     return shown
 
 
-def heat_map_figure(
-    event: Round,
-    regions: Regions,
-    *,
-    scenario: str = "",
-    dots: int = MOST_DOTS,
-    things: Sequence[Outline] = (),
-    axes: PlaneAxes | None = None,
-) -> Figure:
-    """A figure of one round with title, colour bar and legend; not registered with pyplot.
-
-    Where regions lie above one another, there are two maps: of the worst, and of the mean.
-    """
-    drawn = cells(regions, event.verdict.estimates, axes)
-    lower, upper = extent(drawn, things)
-    depth, width = upper - lower
-    height = float(np.clip(7.6 * depth / max(width, 1e-9), 2.2, 7.6))
-    maps = 1 if drawn.stack == 1 else 2
-    if not drawn.from_above:
-        height = 4.8
-    elif maps == 2:
-        height = max(0.75 * height, 2.2)
-    caption = fill(_caption(event, regions, drawn), 120 if maps == 1 else 170)
-    height += 0.2 * caption.count("\n") + (0.3 if things else 0.0)
-    figure = Figure(figsize=(9.6 if maps == 1 else 14.0, height + 1.6), layout="constrained")
-    panels = [figure.add_subplot(1, maps, 1 + i) for i in range(maps)]
-    figure.get_layout_engine().execute(figure)
-    look: dict[str, Any] = {"dots": dots, "things": things, "axes": axes}
-    ax = panels[0]
-    shown = draw_heat_map(ax, event, regions, **look)
-    if maps == 2:
-        draw_heat_map(panels[1], event, regions, **look, mean=True)
-    title = f"{scenario}: {headline(event)}" if scenario else headline(event)
-    blank = "\n" * (1 + caption.count("\n"))
-    ax.set_title(title + blank, fontsize=12, fontweight="bold", loc="left", color=INK)
-    offset = {"xytext": (0, 6), "textcoords": "offset points", "va": "bottom"}
-    ax.annotate(caption, (0, 1), xycoords="axes fraction", fontsize=8.5, color=INK, **offset)
-    add_colour_bar(figure, panels[-1].inset_axes((1.015, 0.0, 0.02, 1.0)))
-    figure.legend(
-        handles=legend_handles(event, shown, things),
-        title=shown.statement,
-        title_fontsize=8.5,
-        fontsize=8.5,
-        loc="outside lower center",
-        ncols=7,
-        frameon=False,
-        columnspacing=1.4,
-        handletextpad=0.4,
-    )
-    return figure
-
-
-def save_heat_map(
-    event: Round,
-    regions: Regions,
-    stem: str | Path,
-    *,
-    scenario: str = "",
-    dots: int = MOST_DOTS,
-    things: Sequence[Outline] = (),
-    axes: PlaneAxes | None = None,
-) -> tuple[Path, Path]:
-    """Write `heat_map_figure` as ``<stem>.png`` and ``<stem>.svg``, the same bytes every time.
-
-    Returns:
-        The two files.
-    """
-    look: dict[str, Any] = {"dots": dots, "things": things, "axes": axes}
-    figure = heat_map_figure(event, regions, scenario=scenario, **look)
-    return save_figure(figure, stem)
-
-
 def add_colour_bar(figure: Figure, ax: Axes) -> None:
     """The scale of failure probability, 0 to 1, filling `ax`."""
     bar = figure.colorbar(ScalarMappable(Normalize(0.0, 1.0), failure_map()), cax=ax)
@@ -205,23 +129,6 @@ def extent(drawn: Cells, things: Sequence[Outline] = ()) -> tuple[Array, Array]:
     if not drawn.in_world:
         return drawn.lower.min(axis=0), drawn.upper.max(axis=0)
     return widened(drawn.lower.min(axis=0), drawn.upper.max(axis=0), things)
-
-
-def _caption(event: Round, regions: Regions, drawn: Cells) -> str:
-    objects, others = regions.area.objects, listed(drawn.others)
-    parts = [details(event, regions)]
-    if drawn.stack > 1:
-        most = "" if drawn.stack * len(drawn.region) == regions.K else "up to "
-        parts.append(
-            f"each cell shows the worst of {most}{drawn.stack} regions (left), and their mean "
-            f"(right), over {others}"
-        )
-    elif others:
-        parts.append(f"averaged over {others}")
-    if len(objects) > 1:
-        seen = {objects[i].name: None for i, _ in drawn.axes}
-        parts.append(f"places of {listed(list(seen))}")
-    return "; ".join(parts)
 
 
 def _frame(ax: Axes, drawn: Cells, things: Sequence[Outline]) -> None:

@@ -128,7 +128,7 @@ def run_figure(
         width_ratios=[1] * columns + [0.03],
     )
     shown: list[tuple[Round, Sample]] = []
-    stacked = False
+    stacked, several = False, len(drawn.area.objects) > 1 and drawn.from_above
     for i, event in enumerate(events):
         ax = figure.add_subplot(grid[i // columns, i % columns])
         parts = regions[i]
@@ -154,7 +154,8 @@ def run_figure(
         frameon=False,
         fontsize=8.5,
         title=f"at most {DOTS} instances of each round, drawn at random"
-        + (f"; cells show their worst region over {listed(drawn.others)}" if stacked else ""),
+        + (f"; cells show their worst region over {listed(drawn.others)}" if stacked else "")
+        + (f"; places of {drawn.area.objects[drawn.object].name}" if several else ""),
         title_fontsize=8.5,
     )
     return figure

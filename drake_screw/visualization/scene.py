@@ -13,16 +13,12 @@ from pathlib import Path
 import numpy as np
 from pydrake.geometry import (
     Meshcat,
-    MeshcatVisualizer,
-    MeshcatVisualizerParams,
 )
 from pydrake.perception import BaseField, Fields, PointCloud
-from pydrake.planning import RobotDiagramBuilder
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
-from drake_screw.robot.parts import add_robot, add_surroundings
 from drake_screw.screws import pose_from_planar
 from drake_screw.tasks import Regions, WorkArea
 from drake_screw.typing import Array
@@ -40,6 +36,7 @@ from drake_screw.visualization.palette import (
     linear_from_srgb,
 )
 from drake_screw.visualization.rounds import Round, Sample, sample
+from drake_screw.visualization.workcell_drawing import draw_workcell
 
 MOST_DOTS = 6_000
 CLAY = "#efeee6"
@@ -98,7 +95,7 @@ class Scene:
         meshcat.SetProperty("/Axes", "visible", False)
         meshcat.SetProperty("/Background", "top_color", SKY[0])
         meshcat.SetProperty("/Background", "bottom_color", SKY[1])
-        _draw_workcell(meshcat, robot, table, obstacles)
+        draw_workcell(meshcat, robot, table, obstacles)
         self._draw_area()
         self._aim_camera()
 
@@ -264,27 +261,6 @@ class Scene:
 
 def _round_path(number: int) -> str:
     return f"/rounds/{number + 1:02d}"
-
-
-def _draw_workcell(
-    meshcat: Meshcat,
-    robot: RobotConfig,
-    table: TableConfig | None,
-    obstacles: Sequence[ObstacleConfig],
-) -> None:
-    builder = RobotDiagramBuilder(time_step=0.0)
-    plant = builder.plant()
-    added = add_robot(builder.parser(), robot)
-    add_surroundings(plant, table, obstacles=obstacles)
-    plant.Finalize()
-    arm = added.arm()
-    parameters = MeshcatVisualizerParams(prefix="/workcell")
-    MeshcatVisualizer.AddToBuilder(builder.builder(), builder.scene_graph(), meshcat, parameters)
-    diagram = builder.Build()
-    context = diagram.CreateDefaultContext()
-    positions = arm.full_positions(np.array(robot.start, dtype=float))
-    plant.SetPositions(plant.GetMyMutableContextFromRoot(context), positions)
-    diagram.ForcedPublish(context)
 
 
 def _draw_token(meshcat: Meshcat, path: str, number: int, X_WT: Array) -> None:

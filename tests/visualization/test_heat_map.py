@@ -181,11 +181,22 @@ def test_stacks_and_the_drawn_object_are_stated(make_round) -> None:
     )
     regions = grid_regions(area, {"bowl.x": 2, "bowl.yaw": 2})
     worst, mean = heat_map_figure(make_round(regions, [1, 2, 8, 0]), regions).axes[:2]
-    stated = "worst of 2 regions (left), and their mean (right), over bowl yaw and cup y; "
-    assert any(stated + "places of bowl" in " ".join(t.split()) for t in texts(worst))
+    titles = [" ".join(ax.get_title(loc="left").split()) for ax in (worst, mean)]
+    assert titles[0] == "bowl: the worst of 2 regions over bowl yaw and cup y"
+    assert titles[1] == "bowl: the mean over bowl yaw and cup y"
     assert {"0.800", "0.200"} <= set(texts(worst))
     assert "0.100" not in texts(worst)
     assert {"0.450", "0.100"} <= set(texts(mean))
+
+
+def test_every_object_that_moves_has_its_maps(make_round) -> None:
+    cup = ObjectArea("cup", (0.4, 0.6, 0.0), (0.5, 0.9, 0.0), 0.0)
+    regions = grid_regions(WorkArea((BOWL, cup)), {"bowl.x": 2, "cup.y": 2})
+    event = make_round(regions, [1, 2, 8, 0])
+    maps = heat_map_figure(event, regions).axes[:4]
+    titles = [ax.get_title(loc="left").split(":")[0] for ax in maps]
+    assert titles == ["bowl", "bowl", "cup", "cup"]
+    np.testing.assert_allclose(marks(maps[2], "suggestion"), [event.suggestion.x_y_yaw[1, :2]])
 
 
 def test_axes_are_chosen_and_named(make_round) -> None:
@@ -237,7 +248,7 @@ def test_a_weakest_region_larger_than_the_cells_is_framed_whole(ax, make_round) 
         [[1, 1, 1], [0.5, 1, 0.5], [1, 1, 0.5]],
     )
     figure = heat_map_figure(make_round(boxes, [6, 1, 9]), boxes)
-    assert any("worst of up to 2 regions" in " ".join(t.split()) for t in texts(figure.axes[0]))
+    assert "worst of up to 2 regions" in " ".join(figure.axes[0].get_title(loc="left").split())
     draw_heat_map(ax, make_round(boxes, [6, 1, 0]), boxes, dots=0)
     (frame,) = [p for p in ax.patches if p.get_gid() == "weakest"]
     np.testing.assert_allclose((frame.get_width(), frame.get_height()), (1.2, 0.4))
