@@ -115,7 +115,7 @@ def test_the_papers_reading_is_shipped_and_does_not_move(task: str) -> None:
         min_progress=0.001,
         region_of_interest=1.5,
     )
-    assert (paper.coverage.strategy, paper.cells) == ("naive_pac", ((4, 4, 1),))
+    assert (paper.coverage.strategy, paper.cells) == ("naive_pac", ((4, 4, 1, 1, 1, 1),))
     assert (paper.coverage.beta, paper.coverage.epsilon, paper.coverage.delta) == (0.95, 0.02, 0.05)
     assert not paper.planner.collision
     assert paper.planner.approach == "screw"

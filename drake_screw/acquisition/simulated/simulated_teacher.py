@@ -24,7 +24,7 @@ from drake_screw.acquisition.simulated.stops import COMFORTABLE, MARGIN, ROUNDIN
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.recording import checked
-from drake_screw.errors import ScenarioError, unknown
+from drake_screw.errors import ScenarioError, counted, unknown
 from drake_screw.robot import Workcell
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
@@ -67,7 +67,7 @@ class SimulatedTeacher:
             None where it is led as a whole.
 
     Raises:
-        ScenarioError: no such motion.
+        ScenarioError: no such motion, or it works on more objects than there are.
     """
 
     def __init__(
@@ -84,6 +84,14 @@ class SimulatedTeacher:
         self.area = area
         self.motion = motion if isinstance(motion, str) else getattr(motion, "__name__", "motion")
         self._motion = MOTIONS[motion] if isinstance(motion, str) else motion
+        least = 1 + max(self._motion(np.random.default_rng(0), np.zeros(1)).objects)
+        if least > len(area.objects):
+            raise ScenarioError(
+                f"teacher.motion: '{self.motion}' works on {counted(least, 'object')}, and there "
+                f"{'is' if len(area.objects) == 1 else 'are'} {len(area.objects)}",
+                remedy="Add objects in the order in which the motion comes to them, or choose "
+                "another motion.",
+            )
         self._chain = workcell.arm.screw_chain()
         self._free_axis = None if free_axis is None else np.asarray(free_axis, dtype=float)
         self._stops = Stops.of(workcell.arm, workcell.start)
