@@ -99,14 +99,14 @@ _MEASURES: dict[str, Callable[[ExecutionReport], str]] = {
 
 @dataclass(frozen=True)
 class Remark:
-    """What is to be said of a trial: its region, where its objects are (m and rad), the words."""
+    """What is to be said of a trial: its region, where its objects are (m, m, rad), the words."""
 
     region: int
-    x_y_yaw: tuple[tuple[float, ...], ...]
+    x_y_yaw: tuple[tuple[float, float, float], ...]
     text: str
 
     def __str__(self) -> str:
-        where = ", ".join(f"x {x:.3f} y {y:.3f}" for x, y, *_ in self.x_y_yaw)
+        where = ", ".join(f"x {x:.3f} y {y:.3f}" for x, y, _ in self.x_y_yaw)
         return f"region {self.region}, {where}: {self.text}"
 
 
@@ -207,7 +207,7 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
 
 
 def _remark(trial: Trial, text: str) -> Remark:
-    places = tuple(tuple(row) for row in trial.x_y_yaw.tolist())
+    places = tuple((x, y, yaw) for x, y, yaw, *_ in trial.x_y_yaw.tolist())
     return Remark(trial.region, places, text)
 
 
