@@ -126,7 +126,7 @@ def _by_density(
     """Rows of `candidate` (N,) by how much fails around them, first those apart."""
     around = _some(np.flatnonzero(evaluation.failed), rng)
     rows = _some(np.flatnonzero(candidate), rng)
-    place, share = evaluation.x_y_yaw, shares(evaluation, regions)
+    place, share = evaluation.coordinates, shares(evaluation, regions)
     near = apart(regions.area, place[rows], place[around]) <= NEIGHBOURHOOD
     left, weight = np.full(len(rows), True), near.astype(float) @ share[around]
     chosen: list[int] = []

@@ -45,6 +45,6 @@ class InteractiveTeacher:
         recording = self.prompt.ask(suggestion, number)
         if recording is None:
             return Lesson(None, "the teacher has no demonstration for this place")
-        away = self.area.away(self.area.coordinates(recording.X_WO), suggestion.x_y_yaw)
+        away = self.area.away(self.area.coordinates(recording.X_WO), suggestion.coordinates)
         source = "dropped into the folder" if recording.source is not None else "led by hand"
         return Lesson(recording, f"{source}, {away * 100:.0f} cm from the suggestion")

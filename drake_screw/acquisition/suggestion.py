@@ -41,12 +41,12 @@ def suggest(
         PluginError: the rule answers what are no rows of failed instances.
     """
     rows = _checked(rule, np.asarray(rule(evaluation, region, regions, rng)), evaluation)[:count]
-    failing = evaluation.x_y_yaw[evenly(evaluation, regions, rng, FAILING)]
+    failing = evaluation.coordinates[evenly(evaluation, regions, rng, FAILING)]
     segment = evaluation.outcomes[rows].furthest_segment
     return tuple(
         Suggestion(
             int(evaluation.region[row]),
-            evaluation.x_y_yaw[row],
+            evaluation.coordinates[row],
             int(segment[i]) if segment[i] >= 0 else None,
             regions,
             failing,
@@ -57,8 +57,8 @@ def suggest(
 
 def random_suggestion(regions: Regions, rng: np.random.Generator) -> Suggestion:
     """An instance drawn uniformly from the whole work area."""
-    x_y_yaw = anywhere(regions.area, rng, 1)[0]
-    return Suggestion(int(regions.index(x_y_yaw)), x_y_yaw)
+    coordinates = anywhere(regions.area, rng, 1)[0]
+    return Suggestion(int(regions.index(coordinates)), coordinates)
 
 
 def initial_suggestions(
@@ -79,9 +79,9 @@ def initial_suggestions(
     """
     places = [random_suggestion(regions, rng)]
     if first is not None and number == 0 and np.isfinite(first).any():
-        x_y_yaw = np.where(np.isnan(first), places[0].x_y_yaw, first)
-        if not regions.area.overlaps(x_y_yaw):
-            places.insert(0, Suggestion(int(regions.index(x_y_yaw)), x_y_yaw))
+        coordinates = np.where(np.isnan(first), places[0].coordinates, first)
+        if not regions.area.overlaps(coordinates):
+            places.insert(0, Suggestion(int(regions.index(coordinates)), coordinates))
     failing = anywhere(regions.area, rng, FAILING)
     return tuple(replace(place, failing=failing) for place in places)
 

@@ -137,8 +137,8 @@ class _Pulls:
         region = np.zeros(len(points), dtype=np.int64)
         for j, cell in enumerate(frontier):
             region[((points >= cell.lower) & (points < cell.upper)).all(axis=1)] = j
-        x_y_yaw = from_unit_box(self._by._area, points)
-        return Evaluation(x_y_yaw, region, concatenate(self._outcomes), frontier)
+        coordinates = from_unit_box(self._by._area, points)
+        return Evaluation(coordinates, region, concatenate(self._outcomes), frontier)
 
     def _batch(self, points: Array) -> Array:
         outcomes = self._plan(points)

@@ -242,9 +242,9 @@ class Setup(PlanningSetup):
         Raises:
             ValueError: instances of another shape, or not finite.
         """
-        x_y_yaw = self.area.complete(instances)
+        coordinates = self.area.complete(instances)
         return self.planner.all_outcomes(
-            demonstrations, self.area.X_WO(x_y_yaw), self.workcell.start
+            demonstrations, self.area.X_WO(coordinates), self.workcell.start
         )
 
     def plan(

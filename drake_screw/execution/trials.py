@@ -23,7 +23,7 @@ class Trial:
 
     Attributes:
         region: it lies in.
-        x_y_yaw: (k, c) m and rad, in the order of `WorkArea.axes`.
+        coordinates: (k, c) m and rad, in the order of `WorkArea.axes`.
         demonstration: the name of the one it was planned with; empty if none gives a plan.
         reason: why there is no plan; empty if there is one.
         turned: rad, by which symmetric objects are turned in the plan, by their names.
@@ -31,7 +31,7 @@ class Trial:
     """
 
     region: int
-    x_y_yaw: Array
+    coordinates: Array
     demonstration: str
     reason: str
     execution: Execution | None
@@ -64,7 +64,7 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(header)
     for trial in trials:
-        place = [f"{trial.x_y_yaw[i, j]:.6g}" for i, j in area.columns]
+        place = [f"{trial.coordinates[i, j]:.6g}" for i, j in area.columns]
         report = trial.report
         if report is None:
             said = ["no plan", "", trial.reason, *([""] * len(_MEASURES))]
@@ -207,7 +207,7 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
 
 
 def _remark(trial: Trial, text: str) -> Remark:
-    places = tuple((x, y, yaw) for x, y, yaw, *_ in trial.x_y_yaw.tolist())
+    places = tuple((x, y, yaw) for x, y, yaw, *_ in trial.coordinates.tolist())
     return Remark(trial.region, places, text)
 
 

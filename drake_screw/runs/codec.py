@@ -82,7 +82,7 @@ def save_evaluation(file: Path, evaluation: Evaluation) -> None:
     """Write the instances of a round and their outcomes as .npz."""
     outcomes = evaluation.outcomes
     arrays: dict[str, Any] = {
-        **_coordinate_arrays(evaluation.x_y_yaw),
+        **_coordinate_arrays(evaluation.coordinates),
         "region": _unsigned(evaluation.region),
         "cause": outcomes.cause,
         "segment": outcomes.segment,

@@ -24,7 +24,7 @@ def read_instances(file: Path, area: WorkArea) -> Array:
     what varies may not. Other columns are passed over.
 
     Returns:
-        x_y_yaw: (N, k, c).
+        coordinates: (N, k, c).
 
     Raises:
         ScenarioError: with file and line, whatever is wrong.
@@ -38,7 +38,7 @@ def read_instances(file: Path, area: WorkArea) -> Array:
             file=file,
         ) from error
     header = [name.strip() for name in rows[0]] if rows else []
-    x_y_yaw = np.tile(area.lower, (max(len(rows) - 1, 0), 1, 1))
+    coordinates = np.tile(area.lower, (max(len(rows) - 1, 0), 1, 1))
     columns: dict[int, tuple[int, int]] = {}
     for i in range(len(area.objects)):
         for j, axis in enumerate(area.axes):
@@ -66,20 +66,20 @@ def read_instances(file: Path, area: WorkArea) -> Array:
                 raise ScenarioError(
                     f"{header[column]} is {found!r}, expected a number", file=file, line=number
                 )
-            x_y_yaw[number - 2, i, j] = value
+            coordinates[number - 2, i, j] = value
         kept.append(number - 2)
     if not kept:
         raise ScenarioError("no instances in this file", file=file)
-    return x_y_yaw[kept]
+    return coordinates[kept]
 
 
-def unlike_fixed(x_y_yaw: Array, area: WorkArea) -> dict[str, int]:
+def unlike_fixed(coordinates: Array, area: WorkArea) -> dict[str, int]:
     """How many of the instances (N, k, c) have another number where the work area fixes one.
 
     Returns:
         By the column's name, where there are any: they lie outside the work area.
     """
-    unlike = (np.abs(x_y_yaw - area.lower) > 1e-9).sum(axis=0)
+    unlike = (np.abs(coordinates - area.lower) > 1e-9).sum(axis=0)
     return {
         column_name(area, i, area.axes[j]): int(unlike[i, j])
         for i, j in np.argwhere(~area.free & (unlike > 0))
@@ -92,7 +92,7 @@ def column_name(area: WorkArea, i: int, axis: str) -> str:
 
 
 def outcomes_csv(
-    x_y_yaw: Array,
+    coordinates: Array,
     outcomes: Outcomes,
     names: list[str],
     area: WorkArea,
@@ -105,7 +105,7 @@ def outcomes_csv(
     pitch, which may vary.
 
     Args:
-        x_y_yaw: (N, k, c) m and rad.
+        coordinates: (N, k, c) m and rad.
         outcomes: (N, D).
         names: of the D demonstrations.
         area: names the k objects.
@@ -115,7 +115,7 @@ def outcomes_csv(
     header, cells = [], []
     for i in range(len(area.objects)):
         for j, axis in enumerate(area.axes):
-            values = x_y_yaw[:, i, j]
+            values = coordinates[:, i, j]
             if axis == "yaw" and np.all(values == values[0]):
                 continue
             if j >= PLANAR and not area.free[i, j] and np.all(values == area.lower[i, j]):

@@ -51,7 +51,7 @@ def place(suggestion: Suggestion, regions: Regions) -> str:
     """Where a demonstration is wanted."""
     area = regions.area
     where = ", ".join(
-        f"{o.name} {area.words(i, suggestion.x_y_yaw, turned=True)}"
+        f"{o.name} {area.words(i, suggestion.coordinates, turned=True)}"
         for i, o in enumerate(area.objects)
     )
     failed = "" if suggestion.segment is None else f", segment {suggestion.segment + 1} fails"

@@ -139,7 +139,7 @@ class RunReader:
         try:
             evaluation = load_evaluation(file)
             N, D = evaluation.outcomes.shape
-            if len(evaluation.x_y_yaw) != N or len(evaluation.region) != N:
+            if len(evaluation.coordinates) != N or len(evaluation.region) != N:
                 raise ValueError("its columns are not equally long")
             if entry.demonstrations != D:
                 raise ValueError(f"it has outcomes of {D} demonstrations, not as run.json says")
@@ -212,7 +212,7 @@ class RunReader:
         Raises:
             ScenarioError: there is no such row.
         """
-        total = len(self.event(round).evaluation.x_y_yaw)
+        total = len(self.event(round).evaluation.coordinates)
         if instance is None:
             place = self.catalogue(round).first()
             return None if place is None else int(self.catalogue(round).instance[place])
@@ -240,7 +240,7 @@ class RunReader:
     def _attempt(self, round: int, instance: int, number: int) -> Attempt:
         """One demonstration tried at an instance, cut short where the run saw a collision."""
         event = self.event(round)
-        X_WO = self.setup.area.X_WO(event.evaluation.x_y_yaw[instance])
+        X_WO = self.setup.area.X_WO(event.evaluation.coordinates[instance])
         workcell, demonstration = self.setup.workcell, event.demonstrations[number]
         found = event.evaluation.outcomes[instance][number]
         if found.cause == Cause.NOT_TRIED:

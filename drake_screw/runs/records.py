@@ -70,7 +70,7 @@ class SuggestionRecord:
         area = regions.area
         objects: dict[str, dict[str, float]] = {o.name: {} for o in area.objects}
         for i, j in area.columns:
-            objects[area.objects[i].name][area.axes[j]] = float(suggestion.x_y_yaw[i, j])
+            objects[area.objects[i].name][area.axes[j]] = float(suggestion.coordinates[i, j])
         return cls(
             suggestion.region,
             regions.name(suggestion.region),

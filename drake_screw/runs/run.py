@@ -291,5 +291,5 @@ def draw_all(run: Run, axes: Axes | None = None) -> None:
     number, asked = len(run.directory.record.demonstrations), None
     if reader.rounds == 0 and isinstance(wanted, int) and number < wanted:
         seed, regions = run.setup.scenario.seed, run.setup.regions
-        asked = initial_places(regions, seed, number, run.setup.first)[0].x_y_yaw
+        asked = initial_places(regions, seed, number, run.setup.first)[0].coordinates
     draw_run(run.setup, reader.all_rounds(), run.directory.path, asked=asked, axes=axes)

@@ -43,9 +43,9 @@ class Catalogue:
             return np.arange(len(self.instance))
         return np.flatnonzero(self.region == region)
 
-    def x_y_yaw(self, place: int) -> Array:
+    def coordinates(self, place: int) -> Array:
         """(k, c) m and rad, of a place in the catalogue."""
-        return self.event.evaluation.x_y_yaw[self.instance[place]]
+        return self.event.evaluation.coordinates[self.instance[place]]
 
     def outcomes(self, place: int) -> Outcomes:
         """(D,) of a place in the catalogue."""
@@ -55,14 +55,14 @@ class Catalogue:
         """The place of the instance that the next demonstration is wanted at."""
         if self.event.suggestion is None or self.failing == 0:
             return None
-        return self.nearest(self.event.suggestion.x_y_yaw, np.arange(self.failing))
+        return self.nearest(self.event.suggestion.coordinates, np.arange(self.failing))
 
-    def nearest(self, x_y_yaw: ArrayLike, among: NDArray[np.int64]) -> int | None:
+    def nearest(self, coordinates: ArrayLike, among: NDArray[np.int64]) -> int | None:
         """The place, among some, of the instance nearest to coordinates (k, c)."""
         if len(among) == 0:
             return None
-        there = self.event.evaluation.x_y_yaw[self.instance[among]]
-        away = np.linalg.norm((there - np.asarray(x_y_yaw)).reshape(len(among), -1), axis=1)
+        there = self.event.evaluation.coordinates[self.instance[among]]
+        away = np.linalg.norm((there - np.asarray(coordinates)).reshape(len(among), -1), axis=1)
         return int(among[away.argmin()])
 
     def nearest_to(self, x: float, y: float) -> int | None:
@@ -72,7 +72,7 @@ class Catalogue:
         taken only where none that fails is within 0.03 (m or rad).
         """
         (i, a), (j, b) = self.axes
-        there = self.event.evaluation.x_y_yaw[self.instance]
+        there = self.event.evaluation.coordinates[self.instance]
         p = np.stack([there[:, i, a], there[:, j, b]], axis=-1)
         if len(p) == 0:
             return None

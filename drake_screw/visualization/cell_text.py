@@ -57,7 +57,7 @@ def _marks(drawn: Cells, event: Round) -> Array:
     """(m, 2) x, y of what must not lie under text."""
     places = [drawn.place_of(d.X_WO) for d in event.demonstrations]
     if event.suggestion is not None:
-        places.append(drawn.place(event.suggestion.x_y_yaw))
+        places.append(drawn.place(event.suggestion.coordinates))
     return np.array(places).reshape(-1, 2)
 
 

@@ -90,7 +90,7 @@ def draw_heat_map(
         _draw_robot(ax, text)
     _draw_demonstrations(ax, drawn, event, text)
     if event.suggestion is not None:
-        x, y = drawn.place(event.suggestion.x_y_yaw)
+        x, y = drawn.place(event.suggestion.coordinates)
         look = _marker("*", ACCENT, 19.0 if text else 11.0, INK)
         ax.plot(y, x, **look, zorder=8, gid="suggestion")
     return shown
@@ -165,7 +165,7 @@ def _draw_cells(ax: Axes, drawn: Cells, event: Round, mean: bool) -> None:
 
 def _draw_instances(ax: Axes, drawn: Cells, shown: Sample) -> None:
     for cause in SHAPES:
-        x, y = drawn.place(shown.x_y_yaw[shown.cause == cause]).T
+        x, y = drawn.place(shown.coordinates[shown.cause == cause]).T
         if len(x):
             ax.plot(y, x, **_dot(cause), alpha=0.9, zorder=3, gid=f"instances {cause.name}")
 

@@ -21,7 +21,7 @@ class Instances(Protocol):
     """Task instances and their outcomes."""
 
     @property
-    def x_y_yaw(self) -> Array:
+    def coordinates(self) -> Array:
         """(N, k, c) m and rad."""
 
     @property
@@ -37,7 +37,7 @@ class Place(Protocol):
         """The region it is wanted for."""
 
     @property
-    def x_y_yaw(self) -> Array:
+    def coordinates(self) -> Array:
         """(k, c) m and rad."""
 
 
@@ -70,12 +70,12 @@ class Sample:
     """Some of a round's instances, few enough to draw.
 
     Attributes:
-        x_y_yaw: (n, k, c) m and rad.
+        coordinates: (n, k, c) m and rad.
         cause: (n,) `Cause` values, of the best attempts.
         total: how many instances the round had.
     """
 
-    x_y_yaw: Array
+    coordinates: Array
     cause: NDArray[np.uint8]
     total: int
 
@@ -93,11 +93,11 @@ class Sample:
 
 def sample(evaluation: Instances, most: int) -> Sample:
     """A uniform random subset of at most `most` instances, the same at every call."""
-    total = len(evaluation.x_y_yaw)
+    total = len(evaluation.coordinates)
     chosen = np.arange(total)
     if total > most:
         chosen = np.sort(np.random.default_rng(0).choice(total, most, replace=False))
-    return Sample(evaluation.x_y_yaw[chosen], evaluation.outcomes[chosen].best.cause, total)
+    return Sample(evaluation.coordinates[chosen], evaluation.outcomes[chosen].best.cause, total)
 
 
 def headline(event: Round) -> str:

@@ -111,7 +111,7 @@ class Scene:
         drawn = cells(regions, event.verdict.estimates, table_axes(self._area))
         self._draw_regions(path, drawn, event)
         if event.suggestion is not None:
-            self._draw_suggestion(f"{path}/next", event.suggestion.x_y_yaw)
+            self._draw_suggestion(f"{path}/next", event.suggestion.coordinates)
         self.meshcat.SetProperty(path, "visible", True)
         self._draw_demonstrations(event.demonstrations, drawn)
         shown = sample(event.evaluation, self._dots)
@@ -141,11 +141,11 @@ class Scene:
             self._draw_demonstrations(demonstrations, drawn)
         self._draw_tiles("/progress/regions", drawn, rates)
 
-    def show_suggestion(self, x_y_yaw: Array) -> None:
+    def show_suggestion(self, coordinates: Array) -> None:
         """Let the place (k, c) of a wanted demonstration glow, and no other."""
         if self._slides:
             self.meshcat.Delete(f"{_round_path(max(self._slides))}/next")
-        self._draw_suggestion("/progress/next", x_y_yaw)
+        self._draw_suggestion("/progress/next", coordinates)
 
     def clear_suggestion(self) -> None:
         """Let no place glow."""
@@ -201,8 +201,8 @@ class Scene:
         draw(self.meshcat, f"{path}/weakest/halo", inner, PAPER)
         draw(self.meshcat, f"{path}/weakest/line", outer, INK)
 
-    def _draw_suggestion(self, path: str, x_y_yaw: Array) -> None:
-        for item, X_WO in zip(self._objects, self._area.X_WO(x_y_yaw), strict=True):
+    def _draw_suggestion(self, path: str, coordinates: Array) -> None:
+        for item, X_WO in zip(self._objects, self._area.X_WO(coordinates), strict=True):
             bowl = meshes.bowl(item.radius, item.height).moved(X_WO)
             ring = meshes.ring(1.25 * item.radius, 0.008).moved(X_WO)
             draw(self.meshcat, f"{path}/{item.name}/object", bowl, ACCENT, 0.65)
@@ -233,7 +233,7 @@ class Scene:
         self.meshcat.Delete("/instances")
         flat = self._area.objects[drawn.object].height is not None
         for cause, name in OUTCOME_NAMES.items():
-            p_WO = self._area.X_WO(shown.x_y_yaw[shown.cause == cause])[:, drawn.object, :3, 3]
+            p_WO = self._area.X_WO(shown.coordinates[shown.cause == cause])[:, drawn.object, :3, 3]
             if len(p_WO) == 0:
                 continue
             if flat:

@@ -156,7 +156,7 @@ def work_area_map(
     shown = sample(event.evaluation, dots)
     for cause, color in OUTCOME_COLORS.items():
         chosen = (shown.cause == cause) & (cause != Cause.SUCCESS)
-        points = drawn.place(shown.x_y_yaw[chosen])
+        points = drawn.place(shown.coordinates[chosen])
         path = "".join(f"M{u:.0f} {v:.0f}h0" for u, v in (place(x, y) for x, y in points))
         if path:
             parts.append(
@@ -176,12 +176,12 @@ def work_area_map(
             f'class="token">{number}</text>'
         )
     marks: Sequence[tuple[Array | None, str, str]] = (
-        (None if event.suggestion is None else event.suggestion.x_y_yaw, ACCENT, "suggested"),
+        (None if event.suggestion is None else event.suggestion.coordinates, ACCENT, "suggested"),
         (here, INK, "here"),
     )
-    for x_y_yaw, color, name in marks:
-        if x_y_yaw is not None:
-            u, v = place(*drawn.place(x_y_yaw))
+    for coordinates, color, name in marks:
+        if coordinates is not None:
+            u, v = place(*drawn.place(coordinates))
             parts.append(
                 f'<circle cx="{u:.1f}" cy="{v:.1f}" r="{20 if name == "suggested" else 32}" '
                 f'fill="{color if name == "suggested" else "none"}" stroke="{INK}" '

@@ -110,7 +110,7 @@ class LivePage:
             case RoundFinished():
                 self._finish_round(event)
             case DemonstrationRequested():
-                self._scene.show_suggestion(event.suggestion.x_y_yaw)
+                self._scene.show_suggestion(event.suggestion.coordinates)
                 words = describe(event, self._setup.regions)
                 self._update(headline=words, color=INK, teach=self._teach)
             case DemonstrationAdded():

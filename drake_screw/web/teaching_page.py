@@ -107,7 +107,7 @@ class TeachingPage:
         while self._server.message(0.0) is not None:
             pass
         session = TeachingSession(self._setup, self._inspector, suggestion, number)
-        self._scene.show_suggestion(suggestion.x_y_yaw)
+        self._scene.show_suggestion(suggestion.coordinates)
         updated, changed = 0.0, True
         while not session.over:
             message = self._server.message(PERIOD)

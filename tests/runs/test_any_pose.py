@@ -50,7 +50,7 @@ def test_its_instances_and_suggestions_are_read_again(shelf: Run) -> None:
     with np.load(path / "round_01" / "instances.npz") as data:
         assert data["x_y_yaw"].shape[1:] == data["z_roll_pitch"].shape[1:] == (1, 3)
         stored = np.concatenate([data["x_y_yaw"], data["z_roll_pitch"]], axis=-1)
-    found = told[0].evaluation.x_y_yaw
+    found = told[0].evaluation.coordinates
     np.testing.assert_array_equal(found, stored)
     assert shelf.setup.area.contains(found).all()
     assert np.ptp(found[:, 0, 3]) > 0.15
@@ -93,7 +93,7 @@ def test_a_suggestion_survives_its_record(shelf: Run) -> None:
     suggestion = Suggestion(1, place, 2, regions)
     record = SuggestionRecord.of(suggestion, regions)
     assert list(record.objects["bowl"]) == ["x", "y", "yaw", "z", "pitch"]
-    np.testing.assert_array_equal(record.suggestion(regions).x_y_yaw, place)
+    np.testing.assert_array_equal(record.suggestion(regions).coordinates, place)
     told = describe(DemonstrationRequested(0, 0, suggestion), regions)
     assert "bowl x 0.900 m, y 0.300 m, z 0.050 m, pitch -0.02 rad (region 1" in told
 
@@ -123,7 +123,7 @@ def test_a_certificate_says_how_objects_are_placed(tmp_path: Path) -> None:
     run = new_run(load_scenario("pouring", two), tmp_path / "two")
     rounds = [event for event in run.events() if isinstance(event, RoundFinished)]
     area = run.setup.area
-    found = rounds[0].evaluation.x_y_yaw
+    found = rounds[0].evaluation.coordinates
     away = np.linalg.norm(np.diff(area.X_WO(found)[:, :, :2, 3], axis=1)[:, 0], axis=-1)
     assert len(found) >= 32
     assert not area.overlaps(found).any()

@@ -66,9 +66,9 @@ def test_bounds_shares_and_names() -> None:
 def test_borders_belong_to_the_upper_region_and_outside_to_the_nearest() -> None:
     regions = three()
     places = np.array([[0.9, 0.3], [0.9, 0.0], [0.0, 9.0], [9.0, 9.0], [9.0, -9.0], [1.1, 0.8]])
-    x_y_yaw = np.append(places, np.full((6, 1), 7.0), axis=1)[:, None]
-    np.testing.assert_array_equal(regions.index(x_y_yaw), [2, 1, 0, 2, 1, 2])
-    assert regions.index(x_y_yaw[0]).shape == ()
+    coordinates = np.append(places, np.full((6, 1), 7.0), axis=1)[:, None]
+    np.testing.assert_array_equal(regions.index(coordinates), [2, 1, 0, 2, 1, 2])
+    assert regions.index(coordinates[0]).shape == ()
 
 
 @settings(deadline=None, max_examples=50)

@@ -81,8 +81,8 @@ def test_regions_tile_the_area(grid: GridRegions) -> None:
 
 def test_instances_outside_belong_to_the_nearest_region() -> None:
     grid = grid_regions(ONE, {"x": 4, "y": 4})
-    x_y_yaw = np.array([[[0.0, 0.0, 0.0]], [[2.0, 9.0, 0.0]], [[0.85, -3.0, 9.0]]])
-    np.testing.assert_array_equal(grid.index(x_y_yaw), [0, 15, 1])
+    coordinates = np.array([[[0.0, 0.0, 0.0]], [[2.0, 9.0, 0.0]], [[0.85, -3.0, 9.0]]])
+    np.testing.assert_array_equal(grid.index(coordinates), [0, 15, 1])
 
 
 def test_names() -> None:

@@ -51,7 +51,7 @@ def test_many_successes_are_thinned_and_failures_are_not(make_round, regions) ->
 
 
 def test_the_nearest_on_the_map_prefers_those_that_fail(book) -> None:
-    p = book.event.evaluation.x_y_yaw[book.instance, 0, :2]
+    p = book.event.evaluation.coordinates[book.instance, 0, :2]
     for place in (0, book.failing - 1):
         assert book.nearest_to(*p[place]) == place
     distance = np.linalg.norm(p[book.failing :, None] - p[None, : book.failing], axis=-1)

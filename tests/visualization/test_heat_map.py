@@ -92,7 +92,7 @@ def test_text_that_has_no_room_is_left_out(ax, make_round, regions) -> None:
 def test_text_makes_way_for_marks(ax, make_round, regions) -> None:
     middle = make_round(regions, FAILURES)
     lower, upper = regions.bounds(2)
-    middle.suggestion.x_y_yaw[:] = (lower + upper) / 2.0
+    middle.suggestion.coordinates[:] = (lower + upper) / 2.0
     draw_heat_map(ax, middle, regions)
     y, x = next(t.get_position() for t in ax.texts if t.get_text() == "1.000")
     assert abs(y - 0.3) > 0.05
@@ -146,7 +146,7 @@ def test_instances_are_drawn_by_cause(ax, make_round, regions) -> None:
     for cause in (Cause.SUCCESS, Cause.JOINT_LIMIT, Cause.UNREACHABLE, Cause.COLLISION):
         drawn[cause] = marks(ax, f"instances {cause.name}")
         expected = event.evaluation.outcomes.cause[:, 0] == cause
-        np.testing.assert_allclose(drawn[cause], event.evaluation.x_y_yaw[expected, 0, :2])
+        np.testing.assert_allclose(drawn[cause], event.evaluation.coordinates[expected, 0, :2])
     looks = {
         (line.get_marker(), line.get_markerfacecolor())
         for line in ax.lines
@@ -196,7 +196,7 @@ def test_every_object_that_moves_has_its_maps(make_round) -> None:
     maps = heat_map_figure(event, regions).axes[:4]
     titles = [ax.get_title(loc="left").split(":")[0] for ax in maps]
     assert titles == ["bowl", "bowl", "cup", "cup"]
-    np.testing.assert_allclose(marks(maps[2], "suggestion"), [event.suggestion.x_y_yaw[1, :2]])
+    np.testing.assert_allclose(marks(maps[2], "suggestion"), [event.suggestion.coordinates[1, :2]])
 
 
 def test_axes_are_chosen_and_named(make_round) -> None:

@@ -108,7 +108,7 @@ class SimulatedTeacher:
 
         Where none of the ways that were thought of works, the remark says what was in the way.
         """
-        X_WO = self.area.X_WO(suggestion.x_y_yaw)
+        X_WO = self.area.X_WO(suggestion.coordinates)
         x, y = X_WO[0, :2, 3]
         where = f"x={x:.2f}, y={y:.2f}"
         unreached = limited = 0
