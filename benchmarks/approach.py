@@ -51,12 +51,12 @@ def demonstrations(setup: Setup, seed: int) -> list[Demonstration]:
 def coverage(setups: list[Setup], seed: int, instances: int) -> Array:
     """(approaches, MOST) share of instances that the first n demonstrations solve."""
     area, rng = setups[0].area, np.random.default_rng([6, seed])
-    x_y_yaw = rng.uniform(area.lower, area.upper, (instances, 1, 3))
+    coordinates = rng.uniform(area.lower, area.upper, (instances, 1, 3))
     learned = demonstrations(setups[0], seed)
     found = []
     for setup in setups:
         solved = np.zeros((instances, MOST), dtype=bool)
-        success = setup.evaluate(learned, x_y_yaw).success
+        success = setup.evaluate(learned, coordinates).success
         solved[:, : len(learned)] = success
         found.append(np.logical_or.accumulate(solved, axis=1).mean(axis=0))
     return np.array(found)

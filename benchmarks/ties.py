@@ -47,7 +47,7 @@ def main() -> None:
     segment = np.where(planned.success, np.iinfo(np.int16).max, planned.segment)
     reached = segment.reshape(K, TABLE, -1)
     places = places.reshape(K, TABLE, -1, 3)
-    stood = setup.area.x_y_yaw(np.stack([recording.X_WO for recording in recordings]))
+    stood = setup.area.coordinates(np.stack([recording.X_WO for recording in recordings]))
     home = regions.index(stood)
     n = sample_size(K, goal.epsilon, goal.delta)
     orders = {

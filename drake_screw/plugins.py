@@ -49,6 +49,7 @@ BUILT_IN: Mapping[Group, Mapping[str, str]] = {
     "motions": {
         "pouring": "drake_screw.acquisition.simulated.motions:pouring",
         "scooping": "drake_screw.acquisition.simulated.motions:scooping",
+        "fetching": "drake_screw.acquisition.simulated.motions:fetching",
     },
     "teachers": {
         "simulated": "drake_screw.assembly.teachers:simulated",

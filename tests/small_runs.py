@@ -9,9 +9,9 @@ import pytest
 
 from drake_screw.runs.run import new_run
 from drake_screw.scenario.loader import load_scenario
+from drake_screw.scenario.object_blocks import ObjectBlock
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.values import Interval
-from drake_screw.scenario.workcell_blocks import ObjectBlock
 
 CHANGES = [
     "demonstrations.first=random",

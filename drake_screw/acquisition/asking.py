@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drake_screw.acquisition.events import Evaluation
-from drake_screw.tasks import Regions, WorkArea, free_axes
+from drake_screw.tasks import Regions, WorkArea
 from drake_screw.typing import Array
 
 AskingRule = Callable[[Evaluation, int, Regions, np.random.Generator], NDArray[np.int64]]
@@ -97,19 +97,19 @@ def apart(area: WorkArea, here: Array, there: Array) -> Array:
 
     Args:
         area: the work area.
-        here: (A, k, 3).
-        there: (B, k, 3).
+        here: (A, k, c).
+        there: (B, k, c).
 
     Returns:
-        (A, B), along the axis along which they are farthest apart; a yaw that may be anything goes
-        round.
+        (A, B), along the axis along which they are farthest apart; a yaw or roll that may be
+        anything goes round.
     """
-    free = free_axes(area)
-    extent = area.upper - area.lower
-    closed = np.zeros_like(free)
-    closed[:, 2] = extent[:, 2] > 2.0 * np.pi - 1e-9
+    here, there = area.flat(here), area.flat(there)
+    extent = area.flat(area.upper) - area.flat(area.lower)
+    turns = [axis in ("yaw", "roll") for axis in area.axes]
+    closed = turns & (extent > 2.0 * np.pi - 1e-9)
     farthest = np.zeros((len(here), len(there)))
-    for i, j in zip(*np.nonzero(free), strict=True):
+    for i, j in zip(*np.nonzero(area.free), strict=True):
         along = np.abs(here[:, None, i, j] - there[:, i, j]) / extent[i, j]
         if closed[i, j]:
             along = np.minimum(along, 1.0 - along)
@@ -126,7 +126,7 @@ def _by_density(
     """Rows of `candidate` (N,) by how much fails around them, first those apart."""
     around = _some(np.flatnonzero(evaluation.failed), rng)
     rows = _some(np.flatnonzero(candidate), rng)
-    place, share = evaluation.x_y_yaw, shares(evaluation, regions)
+    place, share = evaluation.coordinates, shares(evaluation, regions)
     near = apart(regions.area, place[rows], place[around]) <= NEIGHBOURHOOD
     left, weight = np.full(len(rows), True), near.astype(float) @ share[around]
     chosen: list[int] = []

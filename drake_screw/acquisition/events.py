@@ -29,14 +29,14 @@ class Evaluation:
     """The instances of one round and what planning made of them.
 
     Attributes:
-        x_y_yaw: (N, k, 3) m, m, rad.
+        coordinates: (N, k, c) m and rad, in the order of `WorkArea.axes`.
         region: (N,) the region each was drawn in.
         outcomes: (N, D), one column for each demonstration in hand.
         frontier: the cells of the tree in which the round ended, where the partition refines
             itself; `region` counts them.
     """
 
-    x_y_yaw: Array
+    coordinates: Array
     region: NDArray[np.int64]
     outcomes: Outcomes
     frontier: tuple[Cell, ...] = ()
@@ -60,16 +60,16 @@ class Suggestion:
 
     Attributes:
         region: the region that needs it.
-        x_y_yaw: (k, 3) the instance to demonstrate at.
+        coordinates: (k, c) the instance to demonstrate at.
         segment: screw segment, from 0, in which the best attempt there failed; None where there
             was no attempt (an initial demonstration).
         regions: what `region` counts; None for the run's own partition.
-        failing: (M, k, 3) instances that fail with the demonstrations in hand, drawn evenly from
+        failing: (M, k, c) instances that fail with the demonstrations in hand, drawn evenly from
             all of the work area where it fails; None where a suggestion is read from a file.
     """
 
     region: int
-    x_y_yaw: Array
+    coordinates: Array
     segment: int | None = None
     regions: Regions | None = None
     failing: Array | None = None

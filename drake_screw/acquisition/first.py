@@ -22,13 +22,13 @@ def first_place(first: First, area: WorkArea, p_WS: Array) -> Array:
         p_WS: (3,) m, the arm's shoulder in the world.
 
     Returns:
-        (k, 3) x, y in m and yaw in rad of each object; NaN what is drawn at random.
+        (k, c) coordinates of each object; NaN what is drawn at random.
     """
     match first:
         case "random":
             return np.full(area.lower.shape, np.nan)
         case "middle":
-            return (area.lower + area.upper) / 2.0
+            return area.curved((area.flat(area.lower) + area.flat(area.upper)) / 2.0)
         case "farthest":
             return _farthest(area, p_WS)
         case _:
@@ -36,8 +36,11 @@ def first_place(first: First, area: WorkArea, p_WS: Array) -> Array:
 
 
 def _farthest(area: WorkArea, p_WS: Array) -> Array:
-    """Of each object the corner of its x, y farthest from p_WS; its height is the same in all."""
-    away = np.abs(area.upper - p_WS[[0, 1, 0]]) >= np.abs(area.lower - p_WS[[0, 1, 0]])
-    place = np.where(away, area.upper, area.lower)
-    place[:, 2] = np.nan
+    """Of each object the corner of its x, y farthest from p_WS; the rest, and of what stands on
+    another object all, is drawn."""
+    lower, upper = area.lower[:, :2], area.upper[:, :2]
+    away = np.abs(upper - p_WS[:2]) >= np.abs(lower - p_WS[:2])
+    place = np.full(area.lower.shape, np.nan)
+    place[:, :2] = np.where(away, upper, lower)
+    place[[item.on is not None for item in area.objects]] = np.nan
     return place

@@ -67,16 +67,16 @@ class _Pulls:
         self._demonstrations = demonstrations
         K = evaluator.regions.K
         self._samples, self._failures = np.zeros(K, dtype=np.int64), np.zeros(K, dtype=np.int64)
-        k = len(evaluator.regions.area.objects)
-        self._x_y_yaw: list[Array] = [np.empty((0, k, 3))]
+        none = np.empty((0, *evaluator.regions.area.lower.shape))
+        self._coordinates: list[Array] = [none]
         self._region: list[NDArray[np.int64]] = [np.empty(0, dtype=np.int64)]
-        self._outcomes: list[Outcomes] = [self._plan(self._x_y_yaw[0])]
+        self._outcomes: list[Outcomes] = [self._plan(self._coordinates[0])]
 
     def __call__(self, counts: NDArray[np.int64]) -> NDArray[np.int64]:
         before = self._failures.copy()
         if not counts.any():
             return np.zeros_like(counts)
-        x_y_yaw, region = draw_in_all(
+        coordinates, region = draw_in_all(
             self._by.regions,
             counts,
             seed=self._by.seed,
@@ -84,22 +84,22 @@ class _Pulls:
             starts=self._samples,
         )
         for first in range(0, len(region), BATCH):
-            self._batch(x_y_yaw[first : first + BATCH], region[first : first + BATCH])
+            self._batch(coordinates[first : first + BATCH], region[first : first + BATCH])
         return self._failures - before
 
     def evaluation(self) -> Evaluation:
         return Evaluation(
-            np.concatenate(self._x_y_yaw),
+            np.concatenate(self._coordinates),
             np.concatenate(self._region),
             concatenate(self._outcomes),
         )
 
-    def _batch(self, x_y_yaw: Array, region: NDArray[np.int64]) -> None:
-        outcomes = self._plan(x_y_yaw)
+    def _batch(self, coordinates: Array, region: NDArray[np.int64]) -> None:
+        outcomes = self._plan(coordinates)
         K = len(self._samples)
         self._samples += np.bincount(region, minlength=K)
         self._failures += np.bincount(region[~outcomes.any_success], minlength=K)
-        self._x_y_yaw.append(x_y_yaw)
+        self._coordinates.append(coordinates)
         self._region.append(region)
         self._outcomes.append(outcomes)
         if self._by.progress is not None:
@@ -107,7 +107,7 @@ class _Pulls:
                 RegionsEvaluated(self._round, self._samples.copy(), self._failures.copy())
             )
 
-    def _plan(self, x_y_yaw: Array) -> Outcomes:
+    def _plan(self, coordinates: Array) -> Outcomes:
         return self._by.planner.any_success(
-            self._demonstrations, self._by.regions.area.X_WO(x_y_yaw), self._by.q_start
+            self._demonstrations, self._by.regions.area.X_WO(coordinates), self._by.q_start
         )

@@ -10,6 +10,7 @@ import numpy as np
 from drake_screw.acquisition.events import Suggestion
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import Recording
+from drake_screw.tasks import WorkArea
 
 
 class DemonstrationPrompt(Protocol):
@@ -26,9 +27,11 @@ class InteractiveTeacher:
 
     Attributes:
         prompt: where they are asked.
+        area: where objects may stand.
     """
 
     prompt: DemonstrationPrompt
+    area: WorkArea
 
     def demonstrate(
         self,
@@ -42,6 +45,6 @@ class InteractiveTeacher:
         recording = self.prompt.ask(suggestion, number)
         if recording is None:
             return Lesson(None, "the teacher has no demonstration for this place")
-        away = np.linalg.norm(recording.X_WO[:, :2, 3] - suggestion.x_y_yaw[:, :2], axis=-1).sum()
+        away = self.area.away(self.area.coordinates(recording.X_WO), suggestion.coordinates)
         source = "dropped into the folder" if recording.source is not None else "led by hand"
         return Lesson(recording, f"{source}, {away * 100:.0f} cm from the suggestion")

@@ -69,7 +69,7 @@ def acquire(
         budget: most demonstrations in total.
         seed: of the run; with the arguments it determines everything.
         ask: chooses the failed instance at which the next one is asked for.
-        first: (k, 3) where the first of the initial ones is asked for, as of `first_place`; None,
+        first: (k, c) where the first of the initial ones is asked for, as of `first_place`; None,
             and for the others, at random.
 
     Yields:

@@ -23,12 +23,12 @@ class TriedOut(Protocol):
         """Where its objects stood, X_WO (k, 4, 4), in the world that requests refer to."""
         ...
 
-    def works(self, recordings: Sequence[Recording], x_y_yaw: Array) -> NDArray[np.bool_]:
+    def works(self, recordings: Sequence[Recording], coordinates: Array) -> NDArray[np.bool_]:
         """Whether each of R gives a plan, with the arm that is planned for.
 
         Args:
             recordings: R of them.
-            x_y_yaw: (M, k, 3) task instances.
+            coordinates: (M, k, c) task instances.
 
         Returns:
             (M, R).
@@ -76,8 +76,8 @@ class RecordedTeacher:
             used_up = "the only recording is" if n == 1 else f"all {n} recordings are"
             return Lesson(None, f"{used_up} used")
         there = [r.X_WO if self.foreign is None else self.foreign.seen(r) for r in left]
-        places = self.regions.area.x_y_yaw(np.stack(there))
-        away = np.linalg.norm(places[..., :2] - suggestion.x_y_yaw[..., :2], axis=-1).sum(axis=-1)
+        places = self.regions.area.coordinates(np.stack(there))
+        away = self.regions.area.away(places, suggestion.coordinates)
         gained = self._gained(left, used, suggestion)
         if gained.any():
             chosen = int(np.lexsort((away, -gained))[0])
@@ -93,7 +93,7 @@ class RecordedTeacher:
                 f"region {suggestion.region} has no unused recording; the nearest at all",
             )
         else:
-            fits = self.foreign.works(left, suggestion.x_y_yaw[None])[0]
+            fits = self.foreign.works(left, suggestion.coordinates[None])[0]
             one, none = (
                 "of the unused recordings that work there, the nearest",
                 "no unused recording works there; the nearest at all",

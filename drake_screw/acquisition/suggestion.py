@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from drake_screw.acquisition.asking import AskingRule, earliest, evenly
 from drake_screw.acquisition.events import Evaluation, Suggestion
 from drake_screw.errors import PluginError
-from drake_screw.tasks import Regions
+from drake_screw.tasks import Regions, anywhere
 from drake_screw.typing import Array
 
 FAILING = 256
@@ -41,12 +41,12 @@ def suggest(
         PluginError: the rule answers what are no rows of failed instances.
     """
     rows = _checked(rule, np.asarray(rule(evaluation, region, regions, rng)), evaluation)[:count]
-    failing = evaluation.x_y_yaw[evenly(evaluation, regions, rng, FAILING)]
+    failing = evaluation.coordinates[evenly(evaluation, regions, rng, FAILING)]
     segment = evaluation.outcomes[rows].furthest_segment
     return tuple(
         Suggestion(
             int(evaluation.region[row]),
-            evaluation.x_y_yaw[row],
+            evaluation.coordinates[row],
             int(segment[i]) if segment[i] >= 0 else None,
             regions,
             failing,
@@ -57,8 +57,8 @@ def suggest(
 
 def random_suggestion(regions: Regions, rng: np.random.Generator) -> Suggestion:
     """An instance drawn uniformly from the whole work area."""
-    x_y_yaw = rng.uniform(regions.area.lower, regions.area.upper)
-    return Suggestion(int(regions.index(x_y_yaw)), x_y_yaw)
+    coordinates = anywhere(regions.area, rng, 1)[0]
+    return Suggestion(int(regions.index(coordinates)), coordinates)
 
 
 def initial_suggestions(
@@ -70,18 +70,19 @@ def initial_suggestions(
         regions: the run's partition.
         rng: draws the place.
         number: of the demonstration, from 0.
-        first: (k, 3) where number 0 is asked for, NaN what is drawn; None, and for the others, at a
+        first: (k, c) where number 0 is asked for, NaN what is drawn; None, and for the others, at a
             random place.
 
     Returns:
-        The place, and behind one that is settled a random one, should it be out of reach.
+        The place, and behind one that is settled a random one, should it be out of reach. Where
+        objects would overlap there, which must not, it is the random one alone.
     """
-    lower, upper = regions.area.lower, regions.area.upper
     places = [random_suggestion(regions, rng)]
     if first is not None and number == 0 and np.isfinite(first).any():
-        x_y_yaw = np.where(np.isnan(first), places[0].x_y_yaw, first)
-        places.insert(0, Suggestion(int(regions.index(x_y_yaw)), x_y_yaw))
-    failing = rng.uniform(lower, upper, (FAILING, *lower.shape))
+        coordinates = np.where(np.isnan(first), places[0].coordinates, first)
+        if not regions.area.overlaps(coordinates):
+            places.insert(0, Suggestion(int(regions.index(coordinates)), coordinates))
+    failing = anywhere(regions.area, rng, FAILING)
     return tuple(replace(place, failing=failing) for place in places)
 
 

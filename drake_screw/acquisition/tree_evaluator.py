@@ -9,7 +9,7 @@ from drake_screw.acquisition.grid_evaluator import BATCH, Progress
 from drake_screw.bandits import Cell, CertifyOrSplit, TreeVerdict, Verdict, cell_number
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Outcomes, Planner, concatenate
-from drake_screw.tasks import WorkArea, free_axes, from_unit_box, uniform
+from drake_screw.tasks import WorkArea, from_unit_box, uniform
 from drake_screw.typing import Array
 
 
@@ -40,7 +40,7 @@ class TreeEvaluator:
         seed: int,
         progress: Progress | None = None,
     ) -> None:
-        free = int(free_axes(area).sum())
+        free = int(area.free.sum())
         if tree.dimension != free:
             raise ValueError(f"the tree has {tree.dimension} axes, the work area {free} free ones")
         self._planner = planner
@@ -137,8 +137,8 @@ class _Pulls:
         region = np.zeros(len(points), dtype=np.int64)
         for j, cell in enumerate(frontier):
             region[((points >= cell.lower) & (points < cell.upper)).all(axis=1)] = j
-        x_y_yaw = from_unit_box(self._by._area, points)
-        return Evaluation(x_y_yaw, region, concatenate(self._outcomes), frontier)
+        coordinates = from_unit_box(self._by._area, points)
+        return Evaluation(coordinates, region, concatenate(self._outcomes), frontier)
 
     def _batch(self, points: Array) -> Array:
         outcomes = self._plan(points)

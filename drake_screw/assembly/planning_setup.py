@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.assembly.sanity import (
-    check_reach,
     check_shapes,
     check_start,
     check_start_is_free,
     kept_within,
 )
 from drake_screw.assembly.symmetries import symmetries
+from drake_screw.assembly.work_area_checks import check_reach, check_room
 from drake_screw.assembly.workcell_parts import (
     object_configs,
     obstacle_configs,
@@ -80,7 +80,8 @@ class PlanningSetup:
         Raises:
             ModelError: the model lacks a name, or a mesh cannot be read.
             ScenarioError: the start is outside the limits, or not free of obstacles, the work area
-                is out of reach, or collision shapes are missing.
+                is out of reach, a region has no room for objects that must not overlap, or
+                collision shapes are missing.
         """
         try:
             workcell = build_workcell(
@@ -93,6 +94,7 @@ class PlanningSetup:
         check_start(self.scenario, workcell)
         check_start_is_free(self.scenario, workcell)
         check_reach(self.scenario, workcell.arm, self.area)
+        check_room(self.scenario, self.regions)
         return workcell
 
     @property
@@ -121,7 +123,8 @@ class PlanningSetup:
     @cached_property
     def regions(self) -> GridRegions:
         """The bandit's arms; a single one, from which they start, where they are adaptive."""
-        return GridRegions(self.area, np.array(self.scenario.cells))
+        counts = np.array(self.scenario.cells)[:, : len(self.area.axes)]
+        return GridRegions(self.area, counts)
 
     @cached_property
     def batch_planner(self) -> BatchPlanner:

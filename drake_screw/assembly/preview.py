@@ -25,14 +25,13 @@ from drake_screw.assembly.preview_parts import (
     PreviewedTree,
 )
 from drake_screw.assembly.sanity import (
-    Covered,
-    covered_by_obstacles,
     looks_aside,
     missing_shapes,
     not_shown,
     touching_at_start,
 )
 from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.work_area_checks import Covered, covered_by_obstacles
 from drake_screw.bandits import CertifyOrSplit
 from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
 from drake_screw.bandits.eprocess import EProcess
@@ -40,6 +39,7 @@ from drake_screw.bandits.naive_pac import NaivePac, sample_size
 from drake_screw.bandits.spending import attempt_delta
 from drake_screw.errors import counted
 from drake_screw.scenario.schema import Scenario
+from drake_screw.tasks import anywhere
 
 PROBE = 2_000
 
@@ -248,17 +248,17 @@ def _tool(setup: Setup) -> PreviewedTool | None:
 def _objects(setup: Setup) -> tuple[PreviewedObject, ...]:
     found = []
     for o in setup.area.objects:
-        x, y, yaw = zip(o.lower, o.upper, strict=True)
-        found.append(PreviewedObject(o.name, x, y, yaw, o.z))
+        x, y, yaw, _, roll, pitch = zip(o.least, o.greatest, strict=True)
+        found.append(PreviewedObject(o.name, x, y, yaw, o.z, roll, pitch, o.any_orientation, o.on))
     return tuple(found)
 
 
 def _farthest_corner(setup: Setup) -> float:
-    places = setup.area.objects
-    sides = [zip(o.lower[:2], o.upper[:2], strict=True) for o in places]
-    corners = [
-        (x, y, o.z) for o, both in zip(places, sides, strict=True) for x, y in product(*both)
-    ]
+    corners = []
+    for i, o in enumerate(setup.area.objects):
+        x, y, _, z, *_ = zip(o.least, o.greatest, strict=True)
+        X_WP = setup.area.X_WP(i)
+        corners += [X_WP[:3, :3] @ corner + X_WP[:3, 3] for corner in product(x, y, z)]
     shoulder = setup.workcell.arm.screw_chain().shoulder
     return float(np.linalg.norm(np.array(corners) - shoulder, axis=1).max())
 
@@ -292,8 +292,7 @@ def _plans_per_second(setup: Setup) -> tuple[float | None, str | None]:
     if lesson.recording is None:
         return None, lesson.remark
     demonstration = setup.learn(lesson.recording)
-    shape = (PROBE, *setup.area.lower.shape)
-    X_WO = setup.area.X_WO(rng.uniform(setup.area.lower, setup.area.upper, shape))
+    X_WO = setup.area.X_WO(anywhere(setup.area, rng, PROBE))
     setup.planner.any_success([demonstration], X_WO[:1], setup.workcell.start)
     began = time.perf_counter()
     setup.planner.any_success([demonstration], X_WO, setup.workcell.start)

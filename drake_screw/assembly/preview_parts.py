@@ -30,21 +30,41 @@ class PreviewedArm:
 
 @dataclass(frozen=True)
 class PreviewedObject:
-    """Where an object may stand: least and greatest x and y in m and yaw in rad; z in m."""
+    """Where an object may stand: least and greatest x, y, z in m; yaw, roll, pitch in rad.
+
+    `z` is one number where it is fixed. `any_orientation`: whether angles are of a rotation that is
+    uniform on SO(3). `on`: the object from which all are seen; None for the world.
+    """
 
     name: str
     x: tuple[float, float]
     y: tuple[float, float]
     yaw: tuple[float, float]
-    z: float
+    z: float | tuple[float, float]
+    roll: tuple[float, float]
+    pitch: tuple[float, float]
+    any_orientation: bool
+    on: str | None
 
     def __str__(self) -> str:
         ranges = []
-        for axis, unit in (("x", "m"), ("y", "m"), ("yaw", "rad")):
-            lower, upper = getattr(self, axis)
-            numbers = f"{lower:g}..{upper:g}" if lower < upper else f"{lower:g}"
+        for axis, unit in _UNITS.items():
+            value = getattr(self, axis)
+            lower, upper = value if isinstance(value, tuple) else (value, value)
+            if self.any_orientation and unit == "rad":
+                continue
+            if axis in ("roll", "pitch") and lower == upper == 0.0:
+                continue
+            least = f"{lower:.4g}" if axis == "z" else f"{lower:g}"
+            numbers = f"{lower:g}..{upper:g}" if lower < upper else least
             ranges.append(f"{axis} {numbers} {unit}")
-        return f"{self.name}: {', '.join(ranges)}, z {self.z:.4g} m"
+        if self.any_orientation:
+            ranges.append("turned in any way")
+        on = "" if self.on is None else f" on {self.on}"
+        return f"{self.name}{on}: {', '.join(ranges)}"
+
+
+_UNITS = {"x": "m", "y": "m", "yaw": "rad", "z": "m", "roll": "rad", "pitch": "rad"}
 
 
 @dataclass(frozen=True)

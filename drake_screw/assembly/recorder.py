@@ -167,7 +167,7 @@ class Recorder:
         The worlds of two robots are taken to have the directions of their axes in common, and that
         objects stand on something.
         So a place is where it was *seen from the shoulder*, at the height that the first object has
-        now: from there an arm of like build is led to it in a like manner.
+        now, if that is fixed: from there an arm of like build is led to it in a like manner.
         """
         return recording.X_WO if self.robot is None else self._shift(recording) @ recording.X_WO
 
@@ -208,10 +208,10 @@ class Recorder:
         return len(self.area.objects)
 
     def _shift(self, recording: Recording) -> Array:
-        X = np.eye(4)
-        away = self.own.screw_chain().shoulder - self.arm.screw_chain().shoulder
-        X[:2, 3] = away[:2]
-        X[2, 3] = self.area.z[0] - recording.X_WO[0, 2, 3]
+        X, first = np.eye(4), self.area.objects[0]
+        X[:3, 3] = self.own.screw_chain().shoulder - self.arm.screw_chain().shoulder
+        if first.height is not None:
+            X[2, 3] = first.height - recording.X_WO[0, 2, 3]
         return X
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,10 +11,6 @@ from drake_screw.robot import Arm, ScrewChain, Workcell
 from drake_screw.robot.hand import angle_between, out_of_the_hand
 from drake_screw.robot.ignored import Pair, remedy_for
 from drake_screw.scenario.schema import Scenario
-from drake_screw.tasks import WorkArea
-
-TOOL = 0.5
-"""m. The end effector is never farther than this from the object that it works on."""
 
 LISTED = 6
 """Of shapes that are missing; a robot can have many."""
@@ -22,28 +18,8 @@ ON_THE_LIMIT = 1e-6
 """rad or m. So near to a limit is on it."""
 NUDGE = {"rad": 0.05, "m": 0.005}
 """How far inside of a limit it is recommended to start."""
-PLACES = 25
-"""Along each axis of the work area, that are looked at for obstacles."""
 ASIDE = np.deg2rad(45.0)
 """From which on an end effector's z axis clearly does not point out of the hand."""
-STANDS_IN = 1e-3
-"""m, that an object must be in an obstacle; one that stands on it is not."""
-
-
-@dataclass(frozen=True)
-class Covered:
-    """How much of an object's work area an obstacle takes up: there the two would overlap."""
-
-    obstacle: str
-    object: str
-    share: float
-
-    def __str__(self) -> str:
-        share = "all" if self.share >= 1.0 else f"about {max(self.share, 0.01):.0%}"
-        return (
-            f"obstacle '{self.obstacle}' is in the place of '{self.object}' in {share} of its work "
-            "area: the two would overlap there"
-        )
 
 
 def check_start(scenario: Scenario, workcell: Workcell) -> None:
@@ -217,63 +193,6 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
 
 def _listed(names: list[str]) -> str:
     return " and ".join(f"'{name}'" for name in names)
-
-
-def check_reach(scenario: Scenario, arm: Arm, area: WorkArea) -> None:
-    """Check that some of the work area can be reached.
-
-    Raises:
-        ScenarioError: none of an object's can.
-    """
-    chain = arm.screw_chain()
-    for i, item in enumerate(area.objects):
-        nearest = np.clip(chain.shoulder[:2], item.lower[:2], item.upper[:2])
-        away = float(np.linalg.norm(np.append(nearest, item.z) - chain.shoulder))
-        if away > chain.reach + TOOL:
-            raise ScenarioError(
-                f"objects.{i}: the work area of '{item.name}' is out of reach: its nearest "
-                f"point is {away:.2f} m from the shoulder, the end effector gets "
-                f"{chain.reach:.2f} m",
-                remedy="Move the work area towards the robot; x, y and z are in metres, "
-                f"seen from '{scenario.robot.base}'.",
-                file=scenario.source,
-            )
-
-
-def covered_by_obstacles(workcell: Workcell, area: WorkArea) -> tuple[Covered, ...]:
-    """Obstacles that objects would stand inside somewhere in the work area, on a grid of places.
-
-    Nothing comes of it by itself: only with collisions checked, and only if the arm touches
-    something there, do plans fail.
-    """
-    plant, k = workcell.plant, len(area.objects)
-    if not workcell.obstacles:
-        return ()
-    root = workcell.diagram.CreateDefaultContext()
-    context = plant.GetMyMutableContextFromRoot(root)
-    graph = workcell.scene_graph.GetMyContextFromRoot(root)
-    shape = {
-        body.index(): plant.GetCollisionGeometriesForBody(body)[0]
-        for body in (*workcell.objects, *workcell.obstacles)
-    }
-    share = np.linspace(0.0, 1.0, PLACES)
-    inside = np.zeros((len(workcell.obstacles), k))
-    for x_share in share:
-        for y_share in share:
-            at = area.lower + np.array([x_share, y_share, 0.5]) * (area.upper - area.lower)
-            plant.SetPositions(context, workcell.positions(workcell.start, area.X_WO(at)))
-            query = workcell.scene_graph.get_query_output_port().Eval(graph)
-            for i, obstacle in enumerate(workcell.obstacles):
-                for j, body in enumerate(workcell.objects):
-                    pair = shape[obstacle.index()], shape[body.index()]
-                    distance = query.ComputeSignedDistancePairClosestPoints(*pair).distance
-                    inside[i, j] += distance < -STANDS_IN
-    return tuple(
-        Covered(obstacle.name(), area.objects[j].name, float(inside[i, j] / PLACES**2))
-        for i, obstacle in enumerate(workcell.obstacles)
-        for j in range(k)
-        if inside[i, j]
-    )
 
 
 def looks_aside(workcell: Workcell) -> str | None:

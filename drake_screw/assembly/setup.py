@@ -23,7 +23,6 @@ from drake_screw.demonstrations import Demonstration, Look, Recording
 from drake_screw.planning import Cause, Outcomes, Plan, Planner, connection
 from drake_screw.plugins import find
 from drake_screw.scenario.schema import Scenario
-from drake_screw.tasks import free_axes
 from drake_screw.typing import Array, PathLike
 
 
@@ -134,7 +133,7 @@ class Setup(PlanningSetup):
         block = self.scenario.regions.adaptive
         if block is None:
             return None
-        axes = int(free_axes(self.area).sum())
+        axes = int(self.area.free.sum())
         return CertifyOrSplit(self.goal, axes, block.smallest, block.level)
 
     @property
@@ -185,7 +184,7 @@ class Setup(PlanningSetup):
 
     @cached_property
     def first(self) -> Array:
-        """(k, 3) where the first demonstration is asked for; NaN what is drawn at random."""
+        """(k, c) where the first demonstration is asked for; NaN what is drawn at random."""
         shoulder = self.workcell.arm.screw_chain().shoulder
         return first_place(self.scenario.demonstrations.first, self.area, shoulder)
 
@@ -233,8 +232,9 @@ class Setup(PlanningSetup):
 
         Args:
             demonstrations: D of them.
-            instances: (N, k, 3) x, y in m and yaw in rad of each of the k objects; (N, 3) or (N, 2)
-                will do for a single object, (N, 2) only where the work area fixes its yaw.
+            instances: (N, k, c) coordinates of each of the k objects in m and rad, as
+                `WorkArea.complete` takes them: x, y and yaw, or x and y, will do where the work
+                area fixes the others, and (N, c) for a single object.
 
         Returns:
             Outcomes (N, D).
@@ -242,9 +242,9 @@ class Setup(PlanningSetup):
         Raises:
             ValueError: instances of another shape, or not finite.
         """
-        x_y_yaw = self.area.complete(instances)
+        coordinates = self.area.complete(instances)
         return self.planner.all_outcomes(
-            demonstrations, self.area.X_WO(x_y_yaw), self.workcell.start
+            demonstrations, self.area.X_WO(coordinates), self.workcell.start
         )
 
     def plan(
@@ -259,7 +259,7 @@ class Setup(PlanningSetup):
 
         Args:
             demonstrations: to choose from.
-            instance: {object: (x, y[, yaw])}, or the numbers of all objects, as for `placed`.
+            instance: {object: (x, y[, yaw, ...])}, or the numbers of all objects, as for `placed`.
             start: (n,) rad or m, where the arm is; the scenario's start if None.
             most: plans to return, the best one and its alternatives.
 

@@ -38,16 +38,18 @@ class TriedRecordings:
         """See `Recorder.seen`."""
         return self.recorder.seen(recording)
 
-    def works(self, recordings: Sequence[Recording], x_y_yaw: Array) -> NDArray[np.bool_]:
-        """(M, R) whether each of R gives a plan at task instances (M, k, 3).
+    def works(self, recordings: Sequence[Recording], coordinates: Array) -> NDArray[np.bool_]:
+        """(M, R) whether each of R gives a plan at task instances (M, k, c).
 
         One of which no motion would be kept gives none.
         """
         learned = [self._learn(recording) for recording in recordings]
         known = [demonstration for demonstration in learned if demonstration is not None]
-        works = np.zeros((len(x_y_yaw), len(learned)), dtype=bool)
+        works = np.zeros((len(coordinates), len(learned)), dtype=bool)
         works[:, [demonstration is not None for demonstration in learned]] = (
-            self.planner.all_outcomes(known, self.recorder.area.X_WO(x_y_yaw), self.start).success
+            self.planner.all_outcomes(
+                known, self.recorder.area.X_WO(coordinates), self.start
+            ).success
         )
         return works
 

@@ -16,8 +16,10 @@ from drake_screw.robot import (
     TableConfig,
     ToolConfig,
 )
+from drake_screw.robot.overlap import ObjectsOverlap
 from drake_screw.robot.parts import turned_frame
 from drake_screw.robot.srdf import start_state
+from drake_screw.scenario.object_blocks import ObjectBlock
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.tasks import ObjectArea, WorkArea
@@ -96,14 +98,20 @@ def placed_shape(block: ShapeBlock) -> PlacedShape:
 
 def work_area(scenario: Scenario) -> WorkArea:
     """Where the objects may stand."""
-    return WorkArea(
-        tuple(
-            ObjectArea(
-                o.name,
-                (o.x.lower, o.y.lower, o.yaw.lower),
-                (o.x.upper, o.y.upper, o.yaw.upper),
-                o.z,
-            )
-            for o in scenario.objects
-        )
+    area = WorkArea(tuple(_object_area(o) for o in scenario.objects))
+    if not scenario.apart:
+        return area
+    return area.apart(ObjectsOverlap(object_configs(scenario), area.related))
+
+
+def _object_area(o: ObjectBlock) -> ObjectArea:
+    return ObjectArea(
+        o.name,
+        (o.x.lower, o.y.lower, o.yaw.lower),
+        (o.x.upper, o.y.upper, o.yaw.upper),
+        o.z.written(),
+        o.roll.written(),
+        o.pitch.written(),
+        o.orientation == "any",
+        o.on,
     )

@@ -107,7 +107,7 @@ def instance_table(attempts: Sequence[Attempt]) -> Table:
 
 def _print_place(reader: RunReader, selection: Selection, console: Console) -> None:
     if selection.instance is not None:
-        x_y_yaw = reader.event(selection.round).evaluation.x_y_yaw[selection.instance]
-        place = where(reader.setup.area, x_y_yaw)
+        coordinates = reader.event(selection.round).evaluation.coordinates[selection.instance]
+        place = where(reader.setup.area, coordinates)
         words = f"round {selection.round + 1}, instance {selection.instance}: {place}"
         console.print(Text(words), soft_wrap=True)

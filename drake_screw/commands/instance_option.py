@@ -14,6 +14,8 @@ from drake_screw.errors import ScenarioError
 
 _NAME = "--instance"
 
+Place = tuple[float, ...] | dict[str, float]
+
 
 def instance_option(sentence: str) -> Any:
     """The option, for a verb whose command is an `InstanceCommand`; `parse_instance` reads it.
@@ -24,8 +26,9 @@ def instance_option(sentence: str) -> Any:
     return typer.Option(
         _NAME,
         metavar="OBJECT=X,Y[,YAW] ...",
-        help=f"{sentence} In m and rad, as in bowl=0.9,0.1 cup=0.8,-0.2,0.5. What is fixed may be "
-        "left out: a yaw, or a whole object. A single object needs no name: 0.9 0.1.",
+        help=f"{sentence} In m and rad, as in bowl=0.9,0.1 cup=0.8,-0.2,0.5, and where others vary "
+        "bowl=0.9,0.1,z=0.05,roll=0.3. What is fixed may be left out: a yaw, or a whole object. A "
+        "single object needs no name: 0.9 0.1.",
         show_default=False,
     )
 
@@ -55,17 +58,19 @@ class InstanceCommand(TyperCommand):
         )
 
 
-def parse_instance(words: Sequence[str]) -> dict[str, tuple[float, ...]] | tuple[float, ...]:
+def parse_instance(words: Sequence[str]) -> dict[str, Place] | tuple[float, ...]:
     """The words of the option as what `drake_screw.assembly.placing.placed` takes.
 
     >>> parse_instance(["bowl=0.9,0.1", "cup=0.8,-0.2,0.5"])
     {'bowl': (0.9, 0.1), 'cup': (0.8, -0.2, 0.5)}
     >>> parse_instance(["0.9", "-0.1"])
     (0.9, -0.1)
+    >>> parse_instance(["bowl=0.9,0.1,z=0.05"])
+    {'bowl': {'x': 0.9, 'y': 0.1, 'z': 0.05}}
 
     Raises:
-        ScenarioError: a word is neither, an object is there twice, or numbers without a name are
-            not those of a single object.
+        ScenarioError: a word is neither, an object or an axis is there twice, or numbers without a
+            name are not those of a single object.
     """
     if not any("=" in word for word in words):
         numbers = tuple(_number(word, f"{_NAME} {' '.join(words)}") for word in words)
@@ -75,7 +80,7 @@ def parse_instance(words: Sequence[str]) -> dict[str, tuple[float, ...]] | tuple
                 remedy=_remedy(),
             )
         return numbers
-    places: dict[str, tuple[float, ...]] = {}
+    places: dict[str, Place] = {}
     for word in words:
         name, equals, numbers_of_it = word.partition("=")
         if not (name and equals):
@@ -86,8 +91,29 @@ def parse_instance(words: Sequence[str]) -> dict[str, tuple[float, ...]] | tuple
             raise ScenarioError(
                 f"{_NAME}: '{name}' is given twice", remedy="Give each object once."
             )
-        places[name] = tuple(_number(part, word, name) for part in numbers_of_it.split(","))
+        places[name] = _place(numbers_of_it.split(","), word, name)
     return places
+
+
+def _place(parts: Sequence[str], word: str, name: str) -> Place:
+    """X,Y or X,Y,YAW, and behind them, or in their place, axes by their names."""
+    leading = list(takewhile(lambda part: "=" not in part, parts))
+    numbers = tuple(_number(part, word, name) for part in leading)
+    if len(leading) == len(parts):
+        return numbers
+    place = dict(zip(("x", "y", "yaw"), numbers, strict=False))
+    if len(numbers) > len(place):
+        raise ScenarioError(
+            f"{word}: {len(numbers)} numbers before the axes by name", remedy=_remedy(name)
+        )
+    for part in parts[len(leading) :]:
+        axis, equals, number = part.partition("=")
+        if not equals:
+            raise ScenarioError(f"{word}: '{part}' has no axis", remedy=_remedy(name))
+        if axis in place:
+            raise ScenarioError(f"{word}: {axis} is given twice", remedy="Give each axis once.")
+        place[axis] = _number(number, word, name)
+    return place
 
 
 def _number(text: str, within: str, name: str | None = None) -> float:

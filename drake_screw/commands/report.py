@@ -17,6 +17,14 @@ def report(
     svg: Annotated[
         bool, typer.Option("--svg", help="Draw the pictures as SVG, too, to be printed large.")
     ] = False,
+    axes: Annotated[
+        str | None,
+        typer.Option(
+            metavar="AXIS,AXIS",
+            help="Axes of the heat maps, upwards and sideways, as in cup.x,bowl.y. Default: x,y of "
+            "the first object that may move in both.",
+        ),
+    ] = None,
     json: JsonOption = None,
     verbose: VerboseOption = False,
 ) -> None:
@@ -26,17 +34,19 @@ def report(
     """
     output = Output(json)
     from drake_screw.commands.console import show_event, show_summary
+    from drake_screw.runs.pictures import plane_of
     from drake_screw.runs.redrawing import redraw
     from drake_screw.runs.run import open_run
     from drake_screw.runs.summary import summarize_run
     from drake_screw.web.report_page import write_report
 
     job = open_run(run)
+    plane = None if axes is None else plane_of(job.setup, axes.split(","))
     events = list(job.replay())
     summary = summarize_run(job)
     for event in events:
         show_event(event, job.setup.regions, output.console)
     show_summary(summary, output.console)
-    redraw(job.reader, svg=svg)
+    redraw(job.reader, plane, svg=svg)
     output.say(f"written: {write_report(job.reader)}")
     output.write(summary)

@@ -13,7 +13,7 @@ from drake_screw.errors import counted
 from drake_screw.execution.report import Deviation, ExecutionReport
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.status import Phase
-from drake_screw.tasks import AXES, WorkArea
+from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
 
 
@@ -23,7 +23,7 @@ class Trial:
 
     Attributes:
         region: it lies in.
-        x_y_yaw: (k, 3) m, m, rad.
+        coordinates: (k, c) m and rad, in the order of `WorkArea.axes`.
         demonstration: the name of the one it was planned with; empty if none gives a plan.
         reason: why there is no plan; empty if there is one.
         turned: rad, by which symmetric objects are turned in the plan, by their names.
@@ -31,7 +31,7 @@ class Trial:
     """
 
     region: int
-    x_y_yaw: Array
+    coordinates: Array
     demonstration: str
     reason: str
     execution: Execution | None
@@ -49,7 +49,7 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
     Lists in a cell are separated by semicolons: deviations from the screws have an entry for each
     segment, contacts name both bodies.
     """
-    places = [f"{o.name}_{axis}" for o in area.objects for axis in AXES]
+    places = [f"{area.objects[i].name}_{area.axes[j]}" for i, j in area.columns]
     header = [
         "region",
         *places,
@@ -64,7 +64,7 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(header)
     for trial in trials:
-        place = [f"{value:.6g}" for value in trial.x_y_yaw.ravel()]
+        place = [f"{trial.coordinates[i, j]:.6g}" for i, j in area.columns]
         report = trial.report
         if report is None:
             said = ["no plan", "", trial.reason, *([""] * len(_MEASURES))]
@@ -207,7 +207,7 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
 
 
 def _remark(trial: Trial, text: str) -> Remark:
-    places = tuple((float(x), float(y), float(yaw)) for x, y, yaw in trial.x_y_yaw)
+    places = tuple((x, y, yaw) for x, y, yaw, *_ in trial.coordinates.tolist())
     return Remark(trial.region, places, text)
 
 

@@ -67,8 +67,8 @@ class Trial:
         """Whether bowls at xy (M, 2) are planned for, by any of the demonstrations: (M,)."""
         if not demonstrations or len(xy) == 0:
             return np.zeros(len(xy), dtype=bool)
-        x_y_yaw = np.concatenate([xy, np.zeros((len(xy), 1))], axis=1)[:, None]
+        coordinates = np.concatenate([xy, np.zeros((len(xy), 1))], axis=1)[:, None]
         outcomes = self._planner.any_success(
-            demonstrations, self.area.X_WO(x_y_yaw), self.workcell.start
+            demonstrations, self.area.X_WO(coordinates), self.workcell.start
         )
         return np.asarray(outcomes.any_success)

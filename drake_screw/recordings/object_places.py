@@ -93,10 +93,10 @@ def objects_of(
             notes.extend(found.notes)
         elif item.name in mapping.objects:
             given = Given(item.name, mapping.objects[item.name])
-            pose, how = given.pose(float(area.z[i]), hand)
+            pose, how = given.pose(item.height if item.upright else None, hand)
         elif item.name in raw.X_WO:
             pose, how = raw.X_WO[item.name], "from the file"
-        elif item.lower == item.upper:
+        elif area.settled(i):
             pose, how = area.X_WO(area.lower[None])[0, i], "fixed by the scenario"
         else:
             missing.append(item.name)

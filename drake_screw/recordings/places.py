@@ -29,11 +29,12 @@ class Given:
     name: str
     place: object
 
-    def pose(self, z: float, hand: Callable[[float], Array]) -> tuple[Array, str]:
+    def pose(self, z: float | None, hand: Callable[[float], Array]) -> tuple[Array, str]:
         """X_WO (4, 4), and how it was found, in words.
 
         Args:
-            z: m, where objects of that name stand.
+            z: m, where objects of that name stand, upright; None where they may do otherwise, so
+                that x, y and yaw do not say it.
             hand: X_WE (4, 4) at a time in s since the recording's first sample.
 
         Raises:
@@ -46,7 +47,12 @@ class Given:
             if pose:
                 return self._of_quaternion(pose), "given as a pose"
         numbers = self._numbers(self.place)
-        if len(numbers) in (2, 3):
+        if len(numbers) in (2, 3) and z is None:
+            raise self._error(
+                "x, y and perhaps yaw, which is not all: in the scenario its height varies, or it "
+                "stands on something or is tilted"
+            )
+        if len(numbers) in (2, 3) and z is not None:
             planar = np.array([*numbers, 0.0][:3])
             return pose_from_planar(planar, z), f"given, at the scenario's height {z:.4g} m"
         if len(numbers) == 16:

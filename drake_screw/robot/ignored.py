@@ -30,8 +30,8 @@ def let_links_touch(
     Args:
         plant: finalized.
         scene_graph: that the plant is registered with, not yet in a diagram that was built.
-        models: the robot's, whose links are meant; of a scenario's pair one may be the table or an
-            obstacle.
+        models: the robot's, whose links are meant; of a scenario's pair one may be the table, an
+            obstacle or an object.
         robot: which says so.
 
     Returns:
@@ -43,14 +43,12 @@ def let_links_touch(
     """
     bodies = [plant.get_body(BodyIndex(i)) for i in range(1, plant.num_bodies())]
     links = [body for body in bodies if body.model_instance() in models]
-    fixed = [
-        b for b in bodies if b.model_instance() not in models and not b.is_floating_base_body()
-    ]
+    others = [body for body in bodies if body.model_instance() not in models]
     for pair in robot.ignore_collisions:
         a, b = (
             find_body(
                 name,
-                links if any(called(link, name) for link in links) else fixed,
+                links if any(called(link, name) for link in links) else others,
                 key=KEY,
                 kind="link",
                 many="links",

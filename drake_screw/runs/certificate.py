@@ -12,6 +12,7 @@ from drake_screw.assembly.following import free_roll
 from drake_screw.assembly.freedoms import Freedom, freedoms
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits.spending import attempt_delta
+from drake_screw.errors import listed
 from drake_screw.runs.html import certificate_html
 
 
@@ -45,6 +46,9 @@ class Certificate:
         attempt: number of the last round's attempt to certify, from 1.
         delta_of_attempt: its share of delta.
         ignored_collisions: pairs of links that may touch.
+        tool_touches: what the thing in the hand may touch; None where that is nothing.
+        turned_any_way: objects whose orientation is uniform on SO(3); None where none is.
+        apart: True where places at which objects overlap are left out, else None.
         freedoms: symmetries that were taken for granted.
         free_roll: what of the hand's motion was not followed, in a sentence; None where all was.
         approach: how the arm comes to the first guiding pose: "screw", or "free" for any joint
@@ -80,6 +84,9 @@ class Certificate:
     slide_margin: float = 0.0
     ignored_collisions: tuple[tuple[str, str], ...] = ()
     incomplete_shapes: tuple[str, ...] = ()
+    tool_touches: tuple[str, ...] | None = None
+    turned_any_way: tuple[str, ...] | None = None
+    apart: bool | None = None
     freedoms: tuple[Freedom, ...] = ()
     free_roll: str | None = None
     approach: Literal["screw", "free"] = "screw"
@@ -137,9 +144,18 @@ class Certificate:
         return (
             f"This is of {self.regions} region{'' if self.regions == 1 else 's'}, with "
             f"{self.demonstrations} demonstration{'' if self.demonstrations == 1 else 's'}, for "
-            f"places drawn uniformly in each region. To succeed is to have a plan {within} the "
-            f"joint limits of the robot's model{collisions}.{self._unseen()}{self._way_there()}"
+            f"places drawn uniformly in each region{self._places()}. To succeed is to have a plan "
+            f"{within} the joint limits of the robot's model{collisions}.{self._unseen()}"
+            f"{self._way_there()}"
         )
+
+    def _places(self) -> str:
+        words = ""
+        if self.turned_any_way:
+            words += f", {listed(self.turned_any_way)} turned in any way, uniformly on SO(3)"
+        if self.apart:
+            words += ", without those at which objects overlap"
+        return words
 
     def _unseen(self) -> str:
         if not self.collisions_checked or not self.incomplete_shapes:
@@ -151,10 +167,11 @@ class Certificate:
         )
 
     def _ignored(self) -> tuple[str, ...]:
-        if not (self.collisions_checked and self.ignored_collisions):
+        if not self.collisions_checked:
             return ()
-        pairs = ", ".join(f"{a} and {b}" for a, b in self.ignored_collisions)
-        return (f"Whether these touch is not looked at: {pairs}.",)
+        pairs = [f"{a} and {b}" for a, b in self.ignored_collisions]
+        pairs += [f"what the hand holds and {name}" for name in self.tool_touches or ()]
+        return (f"Whether these touch is not looked at: {', '.join(pairs)}.",) if pairs else ()
 
     def _way_there(self) -> str:
         if self.approach != "free":
@@ -241,6 +258,9 @@ def certificate(
         slide_margin=setup.scenario.planner.slide_margin,
         ignored_collisions=setup.scenario.robot.ignore_collisions,
         incomplete_shapes=setup.workcell.model.incomplete,
+        tool_touches=None if setup.robot.tool is None else setup.robot.tool.touches or None,
+        turned_any_way=tuple(o.name for o in setup.area.objects if o.any_orientation) or None,
+        apart=setup.scenario.apart or None,
         strategy=bandit.name,
         guarantee=bandit.guarantee,
         freedoms=freedoms(setup.scenario),

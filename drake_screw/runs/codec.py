@@ -19,6 +19,8 @@ from drake_screw.errors import RunDirectoryError
 from drake_screw.planning import Outcomes
 from drake_screw.runs.certificate import Certificate
 from drake_screw.runs.records import RunRecord, SuggestionRecord
+from drake_screw.tasks import PLANAR
+from drake_screw.typing import Array
 
 FORMAT = 1
 REMEDY = "Restore it, or run the scenario again."
@@ -81,7 +83,7 @@ def save_evaluation(file: Path, evaluation: Evaluation) -> None:
     """Write the instances of a round and their outcomes as .npz."""
     outcomes = evaluation.outcomes
     arrays: dict[str, Any] = {
-        "x_y_yaw": evaluation.x_y_yaw,
+        **_coordinate_arrays(evaluation.coordinates),
         "region": _unsigned(evaluation.region),
         "cause": outcomes.cause,
         "segment": outcomes.segment,
@@ -111,7 +113,21 @@ def load_evaluation(file: Path) -> Evaluation:
             data.get("pair"),  # not known in old runs
         )
         region = data["region"].astype(np.int64)
-        return Evaluation(data["x_y_yaw"], region, outcomes, _frontier(data))
+        return Evaluation(_coordinates(data), region, outcomes, _frontier(data))
+
+
+def _coordinate_arrays(coordinates: Array) -> dict[str, Array]:
+    """x, y, yaw by themselves, as they are in every run."""
+    planar, others = coordinates[..., :PLANAR], coordinates[..., PLANAR:]
+    return {"x_y_yaw": planar} | ({"z_roll_pitch": others} if others.shape[-1] else {})
+
+
+def _coordinates(data: Mapping[str, Array]) -> Array:
+    """What `_coordinate_arrays` made arrays of."""
+    planar = data["x_y_yaw"]
+    if "z_roll_pitch" not in data:
+        return planar
+    return np.concatenate([planar, data["z_roll_pitch"]], axis=-1)
 
 
 def _applicable(certificate: Mapping[str, Any]) -> dict[str, Any]:

@@ -66,8 +66,7 @@ def execute(
         run: its directory.
         per_region: executions in every region; instances without a plan are drawn again, and
             reported.
-        instance: execute this one instead: {object: (x, y[, yaw])}, or the numbers of all objects
-            in their order, as `placed` takes them.
+        instance: execute this one instead: {object: (x, y[, yaw])}, or as `placed` takes them.
         workers: processes; as many as processors if None.
 
     Raises:
@@ -79,23 +78,23 @@ def execute(
     _check_masses(setup)
     planner = setup.careful_planner
 
-    def plan(x_y_yaw: Array) -> Outcomes:
-        X_WO = setup.area.X_WO(x_y_yaw)
+    def plan(coordinates: Array) -> Outcomes:
+        X_WO = setup.area.X_WO(coordinates)
         return planner.any_success(demonstrations, X_WO, setup.workcell.start)
 
     if instance is None:
-        x_y_yaw, outcomes = _fresh_instances(setup, plan, per_region)
+        coordinates, outcomes = _fresh_instances(setup, plan, per_region)
     else:
-        x_y_yaw = placed(setup.area, instance)[None]
-        outcomes = plan(x_y_yaw)
-    X_WO = setup.area.X_WO(x_y_yaw)
+        coordinates = placed(setup.area, instance)[None]
+        outcomes = plan(coordinates)
+    X_WO = setup.area.X_WO(coordinates)
     solved = np.flatnonzero(outcomes.any_success).tolist()
-    best = {i: setup.plan(demonstrations, x_y_yaw[i], most=1) for i in solved}
+    best = {i: setup.plan(demonstrations, coordinates[i], most=1) for i in solved}
     jobs = [Job(best[i].plan, X_WO[i]) for i in solved]
     config = StationConfig(setup.robot, setup.table, setup.objects, setup.obstacles)
     done = dict(zip(solved, execute_all(config, jobs, workers=workers), strict=True))
     trials = []
-    for i, place in enumerate(x_y_yaw):
+    for i, place in enumerate(coordinates):
         region = int(setup.regions.index(place))
         if i in done:
             name, turned = best[i].demonstration.name, best[i].turned
@@ -110,7 +109,7 @@ def execute(
         (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
         (folder / "summary.txt").write_text(f"{found}\n")
         shown = [
-            (trial.execution, setup.area.X_WO(trial.x_y_yaw))
+            (trial.execution, setup.area.X_WO(trial.coordinates))
             for trial in _chosen(trials)
             if trial.execution is not None
         ]
@@ -174,7 +173,7 @@ def _assumed(setup: Setup) -> tuple[str, ...]:
 def _fresh_instances(
     setup: Setup, plan: Callable[[Array], Outcomes], per_region: int
 ) -> tuple[Array, Outcomes]:
-    """Instances (N, k, 3) drawn region by region until so many are solved, and all outcomes.
+    """Instances (N, k, c) drawn region by region until so many are solved, and all outcomes.
 
     Those without a plan stay among them; a region gives up after TRIES times as many draws.
     """
@@ -182,18 +181,18 @@ def _fresh_instances(
     drawn, missing = np.zeros(regions.K, dtype=int), np.full(regions.K, per_region)
     places, outcomes = [], []
     while missing.any():
-        x_y_yaw, region = draw_in_all(
+        coordinates, region = draw_in_all(
             regions, missing, seed=setup.scenario.seed, round=ROUND, starts=drawn
         )
-        planned = plan(x_y_yaw)
-        places.append(x_y_yaw)
+        planned = plan(coordinates)
+        places.append(coordinates)
         outcomes.append(planned)
         drawn += missing
         missing -= np.bincount(region[planned.any_success], minlength=regions.K)
         missing[drawn >= TRIES * per_region] = 0
-    x_y_yaw = np.concatenate(places)
-    order = np.argsort(regions.index(x_y_yaw), kind="stable")
-    return x_y_yaw[order], concatenate(outcomes)[order]
+    coordinates = np.concatenate(places)
+    order = np.argsort(regions.index(coordinates), kind="stable")
+    return coordinates[order], concatenate(outcomes)[order]
 
 
 def _chosen(trials: Sequence[Trial]) -> list[Trial]:

@@ -12,19 +12,19 @@ import numpy as np
 from drake_screw.errors import ScenarioError, suggestion
 from drake_screw.files import csv_text
 from drake_screw.planning import Outcomes
-from drake_screw.tasks import AXES, WorkArea
+from drake_screw.tasks import PLANAR, WorkArea
 from drake_screw.typing import Array
 
 
 def read_instances(file: Path, area: WorkArea) -> Array:
     """Read task instances from a CSV with a header.
 
-    Columns are x, y (m) and yaw (rad) of the only object, or bowl.x and so on where there are
-    several. What the work area fixes may go without a column, and is then as it says; what varies
-    may not. Other columns are passed over.
+    Columns are x, y, z (m) and yaw, roll, pitch (rad) of the only object, or bowl.x and so on where
+    there are several. What the work area fixes may go without a column, and is then as it says;
+    what varies may not. Other columns are passed over.
 
     Returns:
-        x_y_yaw: (N, k, 3).
+        coordinates: (N, k, c).
 
     Raises:
         ScenarioError: with file and line, whatever is wrong.
@@ -38,14 +38,14 @@ def read_instances(file: Path, area: WorkArea) -> Array:
             file=file,
         ) from error
     header = [name.strip() for name in rows[0]] if rows else []
-    x_y_yaw = np.tile(area.lower, (max(len(rows) - 1, 0), 1, 1))
+    coordinates = np.tile(area.lower, (max(len(rows) - 1, 0), 1, 1))
     columns: dict[int, tuple[int, int]] = {}
-    for i, item in enumerate(area.objects):
-        for j, axis in enumerate(AXES):
+    for i in range(len(area.objects)):
+        for j, axis in enumerate(area.axes):
             name = column_name(area, i, axis)
             if name in header:
                 columns[header.index(name)] = (i, j)
-            elif item.lower[j] < item.upper[j]:
+            elif area.free[i, j]:
                 raise ScenarioError(
                     f"no column '{name}', and it varies",
                     remedy=suggestion(name, header, "Columns found"),
@@ -66,27 +66,24 @@ def read_instances(file: Path, area: WorkArea) -> Array:
                 raise ScenarioError(
                     f"{header[column]} is {found!r}, expected a number", file=file, line=number
                 )
-            x_y_yaw[number - 2, i, j] = value
+            coordinates[number - 2, i, j] = value
         kept.append(number - 2)
     if not kept:
         raise ScenarioError("no instances in this file", file=file)
-    return x_y_yaw[kept]
+    return coordinates[kept]
 
 
-def unlike_fixed(x_y_yaw: Array, area: WorkArea) -> dict[str, int]:
-    """How many of the instances (N, k, 3) have another number where the work area fixes one.
+def unlike_fixed(coordinates: Array, area: WorkArea) -> dict[str, int]:
+    """How many of the instances (N, k, c) have another number where the work area fixes one.
 
     Returns:
         By the column's name, where there are any: they lie outside the work area.
     """
-    found = {}
-    for i, item in enumerate(area.objects):
-        for j, axis in enumerate(AXES):
-            if item.lower[j] == item.upper[j]:
-                count = int((np.abs(x_y_yaw[:, i, j] - item.lower[j]) > 1e-9).sum())
-                if count:
-                    found[column_name(area, i, axis)] = count
-    return found
+    unlike = (np.abs(coordinates - area.lower) > 1e-9).sum(axis=0)
+    return {
+        column_name(area, i, area.axes[j]): int(unlike[i, j])
+        for i, j in np.argwhere(~area.free & (unlike > 0))
+    }
 
 
 def column_name(area: WorkArea, i: int, axis: str) -> str:
@@ -95,7 +92,7 @@ def column_name(area: WorkArea, i: int, axis: str) -> str:
 
 
 def outcomes_csv(
-    x_y_yaw: Array,
+    coordinates: Array,
     outcomes: Outcomes,
     names: list[str],
     area: WorkArea,
@@ -104,10 +101,11 @@ def outcomes_csv(
 ) -> str:
     """A row for each instance: where it is, then the outcome code of each demonstration.
 
-    Codes are ``Outcomes.codes``; yaw gets a column where it varies.
+    Codes are ``Outcomes.codes``; a yaw has a column where it varies, and so have z, roll and
+    pitch, which may vary.
 
     Args:
-        x_y_yaw: (N, k, 3) m, m, rad.
+        coordinates: (N, k, c) m and rad.
         outcomes: (N, D).
         names: of the D demonstrations.
         area: names the k objects.
@@ -116,9 +114,11 @@ def outcomes_csv(
     """
     header, cells = [], []
     for i in range(len(area.objects)):
-        for j, axis in enumerate(AXES):
-            values = x_y_yaw[:, i, j]
+        for j, axis in enumerate(area.axes):
+            values = coordinates[:, i, j]
             if axis == "yaw" and np.all(values == values[0]):
+                continue
+            if j >= PLANAR and not area.free[i, j] and np.all(values == area.lower[i, j]):
                 continue
             header.append(column_name(area, i, axis))
             cells.append([f"{v:.9g}" for v in values.tolist()])

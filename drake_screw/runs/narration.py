@@ -49,10 +49,10 @@ def describe(event: Event, regions: Regions) -> str:
 
 def place(suggestion: Suggestion, regions: Regions) -> str:
     """Where a demonstration is wanted."""
-    objects = zip(regions.area.objects, suggestion.x_y_yaw, strict=True)
+    area = regions.area
     where = ", ".join(
-        f"{o.name} x {x:.3f} m, y {y:.3f} m" + (f", yaw {yaw:.2f} rad" if yaw else "")
-        for o, (x, y, yaw) in objects
+        f"{o.name} {area.words(i, suggestion.coordinates, turned=True)}"
+        for i, o in enumerate(area.objects)
     )
     failed = "" if suggestion.segment is None else f", segment {suggestion.segment + 1} fails"
     return f"{where} (region {suggestion.region}{failed})"

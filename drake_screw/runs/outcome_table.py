@@ -95,23 +95,23 @@ def tabulate_outcomes(
         DrakeScrewError: anything that cannot be read or written; nothing is written then.
     """
     setup, output = Setup(scenario), Path(output)
-    x_y_yaw = read_instances(Path(instances), setup.area)
+    coordinates = read_instances(Path(instances), setup.area)
     learned = [setup.learn(recording) for recording in setup.recordings(demonstrations)]
     began = time.perf_counter()
-    outcomes = setup.evaluate(learned, x_y_yaw)
+    outcomes = setup.evaluate(learned, coordinates)
     seconds = time.perf_counter() - began
-    turns = _turns(setup, learned, setup.area.X_WO(x_y_yaw), outcomes)
-    touching = _touching(setup, learned, setup.area.X_WO(x_y_yaw), outcomes)
+    turns = _turns(setup, learned, setup.area.X_WO(coordinates), outcomes)
+    touching = _touching(setup, learned, setup.area.X_WO(coordinates), outcomes)
     names = [d.name for d in learned]
-    text = outcomes_csv(x_y_yaw, outcomes, names, setup.area, turns, touching)
+    text = outcomes_csv(coordinates, outcomes, names, setup.area, turns, touching)
     with writing(output, WRITABLE_OUTPUT):
         write_text(output, text)
     rates = outcomes.success.mean(axis=0).tolist()
     return OutcomeTable(
         output=output,
-        instances=len(x_y_yaw),
-        outside=int((~setup.area.contains(x_y_yaw)).sum()),
-        unlike_fixed=unlike_fixed(x_y_yaw, setup.area),
+        instances=len(coordinates),
+        outside=int((~setup.area.contains(coordinates)).sum()),
+        unlike_fixed=unlike_fixed(coordinates, setup.area),
         success_rates={d.name: rate for d, rate in zip(learned, rates, strict=True)},
         solved=float(outcomes.any_success.mean()),
         collisions=(

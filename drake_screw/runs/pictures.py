@@ -4,26 +4,65 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.assembly.setup import Setup
+from drake_screw.errors import ScenarioError, suggestion
 from drake_screw.files import writing
 from drake_screw.runs.directory import PICTURE, UNWRITABLE_RUN
 from drake_screw.typing import Array
 from drake_screw.visualization import Scene, save_heat_map, save_run_figure
+from drake_screw.visualization.cells import Axes
 from drake_screw.visualization.lifetime import scratch
 from drake_screw.visualization.outlines import outlines
 
 SCENE = "meshcat.html"
 
 
-def draw_round(setup: Setup, event: RoundFinished, stem: Path, *, svg: bool = False) -> None:
-    """Draw a round as ``<stem>.png``, with `svg` as ``<stem>.svg``, too."""
-    things = outlines(setup.obstacles)
-    name = setup.scenario.name
-    save_heat_map(event, event.regions, stem, scenario=name, things=things, svg=svg)
+def plane_of(setup: Setup, names: Sequence[str]) -> Axes:
+    """The axes of heat maps by their names, ``x`` or ``cup.x``: upwards, and sideways.
+
+    Raises:
+        ScenarioError: they are not two, or not of the work area.
+    """
+    area = setup.area
+    several = len(area.objects) > 1
+    known = {
+        f"{item.name}.{axis}" if several else axis: (i, j)
+        for i, item in enumerate(area.objects)
+        for j, axis in enumerate(area.axes)
+    }
+    for name in names:
+        if name not in known:
+            raise ScenarioError(
+                f"no axis '{name}' in this work area", remedy=suggestion(name, known, "Axes")
+            )
+    if len(set(names)) != 2 or len(names) != 2:
+        raise ScenarioError(
+            f"expected two axes of a heat map, found {', '.join(names) or 'none'}",
+            remedy=f"Give two of {', '.join(known)}, separated by a comma.",
+        )
+    up, sideways = names
+    return known[up], known[sideways]
+
+
+def draw_round(
+    setup: Setup,
+    event: RoundFinished,
+    stem: Path,
+    *,
+    axes: Axes | None = None,
+    svg: bool = False,
+) -> None:
+    """Draw a round as ``<stem>.png``, with `svg` as ``<stem>.svg``, too.
+
+    Along the usual axes if None.
+    """
+    look: dict[str, Any] = {"things": outlines(setup.obstacles), "axes": axes, "svg": svg}
+    save_heat_map(event, event.regions, stem, scenario=setup.scenario.name, **look)
 
 
 def draw_run(
@@ -32,12 +71,13 @@ def draw_run(
     folder: Path,
     *,
     asked: Array | None = None,
+    axes: Axes | None = None,
     svg: bool = False,
 ) -> None:
     """Draw a whole run into a folder: rounds.png, with `svg` rounds.svg, and meshcat.html.
 
     Of a run without a round there is just the scene, and in it the place that was `asked` for,
-    (k, 3), if there is one.
+    (k, c), if there is one. Heat maps are along `axes`, the usual ones if None.
 
     Raises:
         RunDirectoryError: they cannot be written.
@@ -59,6 +99,7 @@ def draw_run(
             scenario=name,
             beta=setup.goal.beta,
             things=outlines(setup.obstacles),
+            axes=axes,
             svg=svg,
         )
         with scratch():

@@ -29,7 +29,7 @@ from drake_screw.runs.codec import REMEDY, load_evaluation
 from drake_screw.runs.directory import INSTANCES, SCENARIO, RunDirectory
 from drake_screw.visualization.attempt import Attempt, attempt, collided
 from drake_screw.visualization.browsing import Catalogue, catalogue
-from drake_screw.visualization.rounds import cells
+from drake_screw.visualization.cells import cells
 
 
 class DamagedRound(RunDirectoryError):
@@ -144,7 +144,7 @@ class RunReader:
         try:
             evaluation = load_evaluation(file)
             N, D = evaluation.outcomes.shape
-            if len(evaluation.x_y_yaw) != N or len(evaluation.region) != N:
+            if len(evaluation.coordinates) != N or len(evaluation.region) != N:
                 raise ValueError("its columns are not equally long")
             if entry.demonstrations != D:
                 raise ValueError(f"it has outcomes of {D} demonstrations, not as run.json says")
@@ -217,7 +217,7 @@ class RunReader:
         Raises:
             ScenarioError: there is no such row.
         """
-        total = len(self.event(round).evaluation.x_y_yaw)
+        total = len(self.event(round).evaluation.coordinates)
         if instance is None:
             place = self.catalogue(round).first()
             return None if place is None else int(self.catalogue(round).instance[place])
@@ -245,7 +245,7 @@ class RunReader:
     def _attempt(self, round: int, instance: int, number: int) -> Attempt:
         """One demonstration tried at an instance, cut short where the run saw a collision."""
         event = self.event(round)
-        X_WO = self.setup.area.X_WO(event.evaluation.x_y_yaw[instance])
+        X_WO = self.setup.area.X_WO(event.evaluation.coordinates[instance])
         workcell, demonstration = self.setup.workcell, event.demonstrations[number]
         found = event.evaluation.outcomes[instance][number]
         if found.cause == Cause.NOT_TRIED:
@@ -282,7 +282,7 @@ class RunReader:
     def _catalogue(self, round: int) -> Catalogue:
         event = self.event(round)
         drawn = cells(event.regions, event.verdict.estimates)
-        return catalogue(event, event.evaluation.region, drawn.object)
+        return catalogue(event, event.evaluation.region, drawn.axes)
 
     def _lacks(self, what: str) -> RunDirectoryError:
         return self._odd(f"{what} is missing")

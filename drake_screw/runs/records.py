@@ -53,31 +53,28 @@ class VerdictRecord:
 
 
 @dataclass(frozen=True)
-class PlaceRecord:
-    """Where one object stands: m, m, rad."""
-
-    x: float
-    y: float
-    yaw: float
-
-
-@dataclass(frozen=True)
 class SuggestionRecord:
-    """Where the next demonstration is wanted; `failed_segment` is counted from 1."""
+    """Where the next demonstration is wanted; `failed_segment` is counted from 1.
+
+    Of each of the `objects` there are x, y, yaw, and what else may vary, in m and rad.
+    """
 
     region: int
     region_name: str
-    objects: dict[str, PlaceRecord]
+    objects: dict[str, dict[str, float]]
     failed_segment: int | None
 
     @classmethod
     def of(cls, suggestion: Suggestion, regions: Regions) -> SuggestionRecord:
         """The record of a suggestion in one of some regions."""
-        places = zip(regions.area.objects, suggestion.x_y_yaw.tolist(), strict=True)
+        area = regions.area
+        objects: dict[str, dict[str, float]] = {o.name: {} for o in area.objects}
+        for i, j in area.columns:
+            objects[area.objects[i].name][area.axes[j]] = float(suggestion.coordinates[i, j])
         return cls(
             suggestion.region,
             regions.name(suggestion.region),
-            {o.name: PlaceRecord(*place) for o, place in places},
+            objects,
             None if suggestion.segment is None else suggestion.segment + 1,
         )
 
@@ -85,12 +82,15 @@ class SuggestionRecord:
         """The suggestion again.
 
         Raises:
-            KeyError: an object of the work area is missing.
+            KeyError: an object of the work area, or a coordinate of one, is missing.
         """
-        places = [self.objects[o.name] for o in regions.area.objects]
+        area = regions.area
+        coordinates = area.lower
+        for i, j in area.columns:
+            coordinates[i, j] = self.objects[area.objects[i].name][area.axes[j]]
         return Suggestion(
             self.region,
-            np.array([(place.x, place.y, place.yaw) for place in places]),
+            coordinates,
             None if self.failed_segment is None else self.failed_segment - 1,
             regions,
         )

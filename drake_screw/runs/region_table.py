@@ -6,12 +6,13 @@ import numpy as np
 
 from drake_screw.bandits import Verdict
 from drake_screw.files import csv_text
-from drake_screw.tasks import AXES, Regions
+from drake_screw.tasks import Regions
 
 
 def regions_csv(verdict: Verdict, regions: Regions) -> str:
     """A row for each region of a round: its range in m and rad, counts, confidence bounds."""
-    axes = [f"{o.name}_{axis}" for o in regions.area.objects for axis in AXES]
+    area = regions.area
+    axes = [f"{area.objects[i].name}_{area.axes[j]}" for i, j in area.columns]
     ends = [f"{axis}_{end}" for axis in axes for end in ("min", "max")]
     rows: list[list[object]] = [
         ["region", *ends, "samples", "failures", "failure_rate", "lower", "upper"]
@@ -22,7 +23,7 @@ def regions_csv(verdict: Verdict, regions: Regions) -> str:
         rows.append(
             [
                 j,
-                *(f"{v:.6g}" for v in corners.ravel()),
+                *(f"{v:.6g}" for i, j in area.columns for v in corners[i, j]),
                 verdict.samples[j],
                 verdict.failures[j],
                 *(f"{v:.6g}" for v in rates[j]),

@@ -18,6 +18,7 @@ from drake_screw.acquisition import (
     RoundFinished,
     Status,
 )
+from drake_screw.assembly.placing import PlaceLike
 from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.demonstrations import Demonstration
@@ -81,7 +82,7 @@ class Run:
         return self.reader.demonstrations(count)
 
     def plan(
-        self, *, start: ArrayLike | None = None, most: int = 5, **objects: ArrayLike
+        self, *, start: ArrayLike | None = None, most: int = 5, **objects: PlaceLike
     ) -> RankedPlan:
         """The best plan for a task instance with the run's demonstrations, in memory.
 
@@ -89,7 +90,8 @@ class Run:
             start: (n,) rad or m, where the arm is; the scenario's start if None.
             most: plans to return, the best one and its alternatives.
             objects: x, y in m and, where it varies, yaw in rad of each object, by its name:
-                ``run.plan(bowl=(0.9, 0.1))``. `Setup.plan` takes objects of any name.
+                ``run.plan(bowl=(0.9, 0.1))``, or any axes, ``run.plan(bowl={"x": 0.9, ...})``.
+                `Setup.plan` takes objects of any name.
 
         Raises:
             DrakeScrewError: the run has no demonstrations or cannot be read; the instance is not

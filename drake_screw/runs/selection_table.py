@@ -116,7 +116,7 @@ class GrowingTable:
         setup, had = self._setup, self.each
         self.each = 2 * had or self._first
         self.looks += 1
-        x_y_yaw, region = draw_in_all(
+        coordinates, region = draw_in_all(
             self._regions, self.each - had, seed=setup.scenario.seed, round=ROUND, starts=had
         )
         N, D = len(region), len(self._demonstrations)
@@ -124,7 +124,7 @@ class GrowingTable:
         self._tell(Step(words, 0, N))
         for first in range(0, N, BATCH):
             some = slice(first, first + BATCH)
-            outcomes = setup.evaluate(self._demonstrations, x_y_yaw[some])
+            outcomes = setup.evaluate(self._demonstrations, coordinates[some])
             self._solved.append(outcomes.success)
             self._region.append(region[some])
             self._tell(Step(words, min(first + BATCH, N), N))

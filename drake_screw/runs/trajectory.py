@@ -85,11 +85,11 @@ def write_trajectory(
     opened = open_run(run)
     setup = opened.setup
     _check_robot(format, setup.workcell.arm)
-    x_y_yaw = placed(setup.area, instance)
-    best = setup.plan(opened.demonstrations, x_y_yaw, most=1)
+    coordinates = placed(setup.area, instance)
+    best = setup.plan(opened.demonstrations, coordinates, most=1)
     output = Path(output)
     with writing(output, WRITABLE_OUTPUT):
-        content = _content(writer, best.timed, setup, x_y_yaw)
+        content = _content(writer, best.timed, setup, coordinates)
         if isinstance(content, bytes):
             write_bytes(output, content)
         else:
@@ -103,13 +103,13 @@ def write_trajectory(
         turned={turn.body: turn.angle for turn in best.turned},
         margin=best.margin,
         tightest=best.tightest,
-        outside=not setup.area.contains(x_y_yaw),
+        outside=not setup.area.contains(coordinates),
         assumed=setup.workcell.arm.assumptions,
     )
 
 
 def _content(
-    writer: Callable[..., Any], plan: TimedPlan, setup: Setup, x_y_yaw: Array
+    writer: Callable[..., Any], plan: TimedPlan, setup: Setup, coordinates: Array
 ) -> bytes | Mapping[str, bytes]:
     """What an exporter makes of a plan; one that asks for the setting is given it."""
     content: bytes | Mapping[str, bytes]
@@ -117,7 +117,7 @@ def _content(
     if "setting" not in signature(writer).parameters:
         content = writer(plan, arm)
         return content
-    X_WO = setup.area.X_WO(x_y_yaw[None])[0]
+    X_WO = setup.area.X_WO(coordinates[None])[0]
     scenario = setup.scenario
     content = writer(
         plan,

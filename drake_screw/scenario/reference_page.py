@@ -106,8 +106,11 @@ _RULES = """\
 - `robot.tool.shape` and every obstacle have one shape: `box`, `cylinder`, `sphere` or `mesh`;
   `scale` is for a mesh. At the start nothing touches the tool, and no obstacle the robot.
 - Names of objects and obstacles differ, also from the table and from the robot's links, frames and
-  joints; the range of a yaw is no wider than a full turn; the work area is within
-  reach of the arm.
+  joints; the ranges of a yaw and a roll are no wider than a full turn, a pitch is between -pi/2
+  and pi/2; the work area is within reach of the arm.
+- With `orientation: any` an object has no `roll`, `pitch` and `yaw`. What objects stand on (`on`)
+  leads to the world.
+- `apart` needs two objects and a grid, and some room in each of its regions.
 """
 
 

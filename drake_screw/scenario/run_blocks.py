@@ -34,8 +34,8 @@ class AdaptiveBlock(Block):
 
 class RegionsBlock(Block):
     grid: dict[str, Annotated[int, Field(ge=1)]] | None = None
-    """number of cells per axis: x, y, yaw of the only object, or <object>.x and so on; an axis not
-    named has one cell"""
+    """number of cells per axis: x, y, yaw, z, roll, pitch of the only object, or <object>.x and so
+    on; an axis not named has one cell"""
     adaptive: AdaptiveBlock | None = None
     """cells that are halved wherever something fails, instead of a grid; they bring a strategy of
     their own"""

@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr
 
 from drake_screw.errors import suggestion
 from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.object_blocks import ObjectBlock, standing_problems
 from drake_screw.scenario.run_blocks import (
     CoverageBlock,
     DemonstrationsBlock,
@@ -22,7 +23,6 @@ from drake_screw.scenario.segmentation_block import SegmentationBlock
 from drake_screw.scenario.shape_blocks import ObstacleBlock
 from drake_screw.scenario.values import Name
 from drake_screw.scenario.workcell_blocks import (
-    ObjectBlock,
     RecordedOnBlock,
     RobotBlock,
     TableBlock,
@@ -47,6 +47,8 @@ class Scenario(Block):
     """the table, a box; leave it out for none"""
     objects: tuple[ObjectBlock, ...]
     """the objects of the task, and where they may lie"""
+    apart: bool = False
+    """whether places where objects overlap are left out; for a grid of regions"""
     obstacles: tuple[ObstacleBlock, ...] = ()
     """other things in the workcell that never move, placed in the world's frame"""
     regions: RegionsBlock
@@ -86,17 +88,15 @@ class Scenario(Block):
         return isinstance(other, Scenario) and dict(self) == dict(other)
 
     @property
-    def cells(self) -> tuple[tuple[int, int, int], ...]:
-        """Number of cells along x, y, yaw of each object; to begin with, where adaptive."""
+    def cells(self) -> tuple[tuple[int, ...], ...]:
+        """Number of cells along each of AXES, of each object; to begin with, where adaptive."""
         grid = self.regions.grid or {}
         short = grid if len(self.objects) == 1 else {}
 
         def count(name: str, axis: str) -> int:
             return grid.get(f"{name}.{axis}", short.get(axis, 1))
 
-        return tuple(
-            (count(o.name, "x"), count(o.name, "y"), count(o.name, "yaw")) for o in self.objects
-        )
+        return tuple(tuple(count(o.name, axis) for axis in AXES) for o in self.objects)
 
     def broken_rules(self) -> Iterator[Problem]:
         if not self.objects:
@@ -122,6 +122,8 @@ class Scenario(Block):
                     f"there is no object '{name}'",
                     suggestion(name, names, "Objects"),
                 )
+        yield from standing_problems(self.objects)
+        yield from self._apart()
         yield from self._adaptive()
         yield from self._grid()
         K = math.prod(count for counts in self.cells for count in counts)
@@ -133,13 +135,27 @@ class Scenario(Block):
                 "needed.",
             )
 
+    def _apart(self) -> Iterator[Problem]:
+        if self.apart and len(self.objects) == 1:
+            yield Problem(
+                ("apart",), "there is just one object", "Leave it out, or add another object."
+            )
+        if self.apart and self.regions.adaptive is not None:
+            yield Problem(
+                ("apart",),
+                "adaptive regions are halved by what they take up, which says nothing of what is "
+                "left where objects must not overlap",
+                "Write a grid, as in `regions: {grid: {cup.x: 2, cup.y: 2}}`, or leave `apart` "
+                "out.",
+            )
+
     def _adaptive(self) -> Iterator[Problem]:
         if self.regions.adaptive is None:
             return
-        if all(getattr(o, axis).fixed for o in self.objects for axis in AXES):
+        if all(o.fixes(axis) for o in self.objects for axis in AXES):
             yield Problem(
                 ("regions", "adaptive"),
-                "there is nothing to split: x, y and yaw of every object are fixed",
+                "there is nothing to split: the pose of every object is fixed",
                 "Give an object a range, or write `grid: {}` for a single region.",
             )
         if self.coverage.options:
@@ -162,7 +178,7 @@ class Scenario(Block):
                 yield Problem(keys, f"'{name}' {reason}", suggestion(name, axes, "Axes"))
                 continue
             item, axis = axes[name]
-            if getattr(item, axis).fixed and count > 1:
+            if item.fixes(axis) and count > 1:
                 yield Problem(
                     keys,
                     f"{axis} of '{item.name}' is fixed, so it cannot be split into {count} cells",

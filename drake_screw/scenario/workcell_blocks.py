@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from typing import Annotated, Literal
 
@@ -16,17 +15,15 @@ from drake_screw.scenario.values import (
     RADIANS,
     Address,
     Angles,
-    Interval,
     Limits,
     ModelName,
-    Name,
     NamedState,
     Options,
     Packages,
     Pairs,
     Positive,
 )
-from drake_screw.tasks import AXES, Symmetry
+from drake_screw.tasks import Symmetry
 
 
 class RobotBlock(Block):
@@ -58,7 +55,7 @@ class RobotBlock(Block):
     teacher, to exports and to executions"""
     ignore_collisions: Pairs = ()
     """pairs of links that may touch, [[left_finger, right_finger], ...]: whether they do is not
-    looked at. One of a pair may be `table` or an obstacle"""
+    looked at. One of a pair may be `table`, an obstacle or an object, one that is grasped say"""
     packages: Packages = Field(default={})
     """folders of packages that the model speaks of as `package://NAME/...` and that are not found
     by themselves"""
@@ -170,37 +167,6 @@ class ToolBlock(Block):
         if self.touches and self.shape is None:
             yield Problem(
                 ("touches",), "a tool without a shape touches nothing", "Give it a shape."
-            )
-
-
-class ObjectBlock(Block):
-    name: Name
-    """name of the object: letters, digits, - and _"""
-    x: Annotated[Interval, METRES]
-    """where the object's frame may lie along x: [lower, upper]"""
-    y: Annotated[Interval, METRES]
-    """where the object's frame may lie along y: [lower, upper]"""
-    yaw: Annotated[Interval, RADIANS] = Interval(0.0, 0.0)
-    """how the object may be turned about z: [lower, upper]"""
-    z: Annotated[float, METRES]
-    """height of the object's frame"""
-    radius: Annotated[Positive, METRES]
-    """radius of the object, to draw it and for collisions"""
-    height: Annotated[Positive, METRES]
-    """height of the object, to draw it and for collisions"""
-    symmetry: SymmetryBlock | None = None
-    """how it may be turned about an axis and be the same to the task; left out if it may not"""
-
-    def broken_rules(self) -> Iterator[Problem]:
-        for axis in AXES:
-            interval = getattr(self, axis)
-            if not math.isfinite(interval.upper - interval.lower):
-                yield Problem((axis,), "the range is too wide")
-        if self.yaw.upper - self.yaw.lower > 2 * math.pi + 1e-9:
-            yield Problem(
-                ("yaw",),
-                "the range is wider than a full turn",
-                "Angles are in rad; a full turn is [-3.141592653589793, 3.141592653589793].",
             )
 
 

@@ -22,7 +22,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.errors import ScenarioError
 from drake_screw.scenario.schema import MOST_REGIONS, Scenario
-from drake_screw.tasks import AXES, GridRegions, WorkArea, grid_regions
+from drake_screw.tasks import ANGLES, GridRegions, WorkArea, grid_regions
 
 MOST_RUNS = 10_000_000
 """Of a study, for all numbers of regions together."""
@@ -73,15 +73,15 @@ def split(area: WorkArea, K: int) -> GridRegions:
     """A grid of K equal regions, as square as it goes: 1 x 1, 1 x 2, 2 x 2, 2 x 4, 4 x 4, ...
 
     The prime factors of K, the largest first, go in turn to the axes that can be split: those in
-    metres before the yaws, the longest first.
+    metres before the angles, the longest first.
 
     Raises:
         ScenarioError: K is not positive, or no axis can be split.
     """
-    extent = area.upper - area.lower
+    extent = area.flat(area.upper) - area.flat(area.lower)
     axes = sorted(
         zip(*np.nonzero(extent > 0.0), strict=True),
-        key=lambda axis: (AXES[axis[1]] == "yaw", -extent[axis]),
+        key=lambda axis: (area.axes[axis[1]] in ANGLES, -extent[axis]),
     )
     if K < 1 or (K > 1 and not axes):
         raise ScenarioError(
@@ -94,7 +94,7 @@ def split(area: WorkArea, K: int) -> GridRegions:
     named = {
         f"{item.name}.{axis}": int(counts[i, j])
         for i, item in enumerate(area.objects)
-        for j, axis in enumerate(AXES)
+        for j, axis in enumerate(area.axes)
     }
     return grid_regions(area, named)
 

@@ -16,6 +16,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import PercentFormatter
 
 from drake_screw.tasks import GridRegions
+from drake_screw.visualization.cells import cells
 from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
     add_colour_bar,
@@ -25,7 +26,7 @@ from drake_screw.visualization.heat_map import (
 )
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK, failure_map
-from drake_screw.visualization.rounds import Round, cells
+from drake_screw.visualization.rounds import Round
 
 DOTS = 700
 

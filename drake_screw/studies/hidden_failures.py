@@ -109,11 +109,11 @@ def evenly(
     It certifies what those show by the e-processes of `bandits.mixture`.
     """
     setup, K = experiment.setup, regions.K
-    x_y_yaw, region = draw_in_all(regions, EACH, seed=seed, round=0)
+    coordinates, region = draw_in_all(regions, EACH, seed=seed, round=0)
     outcomes = setup.planner.any_success(
-        demonstrations, setup.area.X_WO(x_y_yaw), setup.workcell.start
+        demonstrations, setup.area.X_WO(coordinates), setup.workcell.start
     )
-    evaluation = Evaluation(x_y_yaw, region, outcomes)
+    evaluation = Evaluation(coordinates, region, outcomes)
     samples = np.full(K, EACH)
     failures = np.bincount(region[evaluation.failed], minlength=K)
     delta = setup.goal.delta

@@ -1,23 +1,27 @@
 """Work areas, their regions, and task instances drawn from them."""
 
-from drake_screw.tasks.boxes import BoxRegions, box_regions, free_axes, from_unit_box
+from drake_screw.tasks.boxes import BoxRegions, box_regions, from_unit_box
+from drake_screw.tasks.object_area import ObjectArea
 from drake_screw.tasks.regions import GridRegions, Regions, grid_regions
-from drake_screw.tasks.sampling import draw, draw_in_all, uniform
+from drake_screw.tasks.sampling import anywhere, draw, draw_in_all, uniform
 from drake_screw.tasks.symmetry import Symmetry
-from drake_screw.tasks.work_area import AXES, ObjectArea, WorkArea
+from drake_screw.tasks.work_area import ANGLES, AXES, PLANAR, Overlap, WorkArea
 
 __all__ = [
+    "ANGLES",
     "AXES",
+    "PLANAR",
     "BoxRegions",
     "GridRegions",
     "ObjectArea",
+    "Overlap",
     "Regions",
     "Symmetry",
     "WorkArea",
+    "anywhere",
     "box_regions",
     "draw",
     "draw_in_all",
-    "free_axes",
     "from_unit_box",
     "grid_regions",
     "uniform",

@@ -18,7 +18,7 @@ class BoxRegions:
 
     Attributes:
         area: the work area.
-        lower, upper: (K, k, 3) corners; equal along axes that are fixed.
+        lower, upper: (K, k, c) corners; equal along axes that are fixed.
     """
 
     area: WorkArea
@@ -33,30 +33,29 @@ class BoxRegions:
     @property
     def shares(self) -> Array:
         """(K,) share of the work area that each region takes up."""
-        free = free_axes(self.area)
-        extent = (self.area.upper - self.area.lower)[free]
-        return np.prod((self.upper - self.lower)[:, free] / extent, axis=1)
+        area = self.area
+        extent = (area.flat(area.upper) - area.flat(area.lower))[area.free]
+        sides = (area.flat(self.upper) - area.flat(self.lower))[:, area.free]
+        return np.prod(sides / extent, axis=1)
 
     def bounds(self, region: ArrayLike) -> tuple[Array, Array]:
-        """Least and greatest x, y, yaw of regions; (...) to two arrays (..., k, 3)."""
+        """Least and greatest coordinates of regions; (...) to two arrays (..., k, c)."""
         region = np.asarray(region)
         return self.lower[region], self.upper[region]
 
-    def index(self, x_y_yaw: ArrayLike) -> NDArray[np.int64]:
+    def index(self, coordinates: ArrayLike) -> NDArray[np.int64]:
         """The region of each instance, the nearest one if it lies outside the area.
 
         An instance on the border of two regions belongs to the upper one.
 
         Args:
-            x_y_yaw: (..., k, 3).
+            coordinates: (..., k, c).
 
         Returns:
             (...) int.
         """
-        free = free_axes(self.area)
-        place = np.clip(np.asarray(x_y_yaw, dtype=float), self.area.lower, self.area.upper)[
-            ..., free
-        ]
+        free, given = self.area.free, np.asarray(coordinates, dtype=float)
+        place = np.clip(given, self.area.lower, self.area.upper)[..., free]
         last = self.upper[:, free] >= self.area.upper[free]
         found = np.zeros(place.shape[:-1], dtype=np.int64)
         for j, (lower, upper) in enumerate(
@@ -73,26 +72,24 @@ class BoxRegions:
         return ranges(self.area, lower, upper, split, digits=3)
 
 
-def free_axes(area: WorkArea) -> NDArray[np.bool_]:
-    """(k, 3) which coordinates may vary; a unit box over the area has an axis for each."""
-    return area.upper > area.lower
-
-
 def from_unit_box(area: WorkArea, unit: ArrayLike) -> Array:
     """Places in the work area from those in the unit box over its d free axes.
 
+    What is uniform in the unit box is uniform in the work area: axes are those of `WorkArea.flat`.
+
     Args:
         area: the work area.
-        unit: (..., d), axes in the order of the objects, x before y before yaw.
+        unit: (..., d), axes in the order of the objects, and of each in the order of the area's.
 
     Returns:
-        x_y_yaw: (..., k, 3), exactly the area's corners for 0 and 1.
+        coordinates: (..., k, c), exactly the area's corners for 0 and 1.
     """
-    unit, free = np.asarray(unit, dtype=float), free_axes(area)
-    lower, upper = area.lower[free], area.upper[free]
-    x_y_yaw = np.tile(area.lower, (*unit.shape[:-1], 1, 1))
-    x_y_yaw[..., free] = np.where(unit == 1.0, upper, lower + unit * (upper - lower))
-    return x_y_yaw
+    unit, free = np.asarray(unit, dtype=float), area.free
+    lower, upper = area.flat(area.lower), area.flat(area.upper)
+    flat = np.tile(lower, (*unit.shape[:-1], 1, 1))
+    inside = lower[free] + unit * (upper[free] - lower[free])
+    flat[..., free] = np.where(unit == 1.0, upper[free], inside)
+    return area.curved(flat)
 
 
 def box_regions(area: WorkArea, lower: ArrayLike, upper: ArrayLike) -> BoxRegions:

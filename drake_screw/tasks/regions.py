@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from drake_screw.tasks.work_area import AXES, WorkArea
+from drake_screw.tasks.work_area import WorkArea
 from drake_screw.typing import Array
 
 
@@ -26,13 +26,13 @@ class Regions(Protocol):
 
     @property
     def shares(self) -> Array:
-        """(K,) share of the work area that each region takes up."""
+        """(K,) share of the work area that each region takes up, as `WorkArea.flat` measures it."""
 
     def bounds(self, region: ArrayLike) -> tuple[Array, Array]:
-        """Least and greatest x, y, yaw of regions; (...) to two arrays (..., k, 3)."""
+        """Least and greatest coordinates of regions; (...) to two arrays (..., k, c)."""
 
-    def index(self, x_y_yaw: ArrayLike) -> NDArray[np.int64]:
-        """The region of each instance, the nearest one if it lies outside; (..., k, 3) to (...)."""
+    def index(self, coordinates: ArrayLike) -> NDArray[np.int64]:
+        """The region of each instance, the nearest one if it lies outside; (..., k, c) to (...)."""
 
     def name(self, region: int) -> str:
         """The human-readable name of a region."""
@@ -42,12 +42,15 @@ class Regions(Protocol):
 class GridRegions:
     """A grid of equal cells over the axes of the work area.
 
+    Equal are their shares: along a pitch that belongs to any orientation cuts are equally far apart
+    in its sine.
+
     Regions are numbered with the first axis running fastest: in a 4 x 4 grid over x and y,
     region 5 is the second cell in x and the second in y.
 
     Attributes:
         area: the work area.
-        counts: (k, 3) cells along x, y and yaw of each object.
+        counts: (k, c) cells along the area's axes of each object.
     """
 
     area: WorkArea
@@ -64,29 +67,34 @@ class GridRegions:
         return np.full(self.K, 1.0 / self.K)
 
     def cell(self, region: ArrayLike) -> NDArray[np.int64]:
-        """Integer coordinates of regions; (...) to (..., k, 3)."""
+        """Integer coordinates of regions; (...) to (..., k, c)."""
         flat = np.unravel_index(np.asarray(region), self.counts.ravel(), order="F")
         return np.stack(flat, axis=-1).reshape(*np.shape(region), *self.counts.shape)
 
     def bounds(self, region: ArrayLike) -> tuple[Array, Array]:
-        """Least and greatest x, y, yaw of regions; (...) to two arrays (..., k, 3)."""
-        cell = self.cell(region)
-        width = (self.area.upper - self.area.lower) / self.counts
-        return self.area.lower + cell * width, self.area.lower + (cell + 1) * width
+        """Least and greatest coordinates of regions; (...) to two arrays (..., k, c)."""
+        cell, (lower, upper) = self.cell(region), self._ends
+        width = (upper - lower) / self.counts
+        curved = self.area.curved
+        return curved(lower + cell * width), curved(lower + (cell + 1) * width)
 
-    def index(self, x_y_yaw: ArrayLike) -> NDArray[np.int64]:
+    @property
+    def _ends(self) -> tuple[Array, Array]:
+        return self.area.flat(self.area.lower), self.area.flat(self.area.upper)
+
+    def index(self, coordinates: ArrayLike) -> NDArray[np.int64]:
         """The region of each instance, the nearest one if it lies outside the area.
 
         Args:
-            x_y_yaw: (..., k, 3).
+            coordinates: (..., k, c).
 
         Returns:
             (...) int.
         """
-        x_y_yaw = np.asarray(x_y_yaw, dtype=float)
-        width = np.where(self.counts > 1, (self.area.upper - self.area.lower) / self.counts, 1.0)
-        cell = np.floor((x_y_yaw - self.area.lower) / width).astype(np.int64)
-        cell = np.clip(cell, 0, self.counts - 1).reshape(*x_y_yaw.shape[:-2], -1)
+        flat, (lower, upper) = self.area.flat(coordinates), self._ends
+        width = np.where(self.counts > 1, (upper - lower) / self.counts, 1.0)
+        cell = np.floor((flat - lower) / width).astype(np.int64)
+        cell = np.clip(cell, 0, self.counts - 1).reshape(*flat.shape[:-2], -1)
         return np.ravel_multi_index(
             tuple(np.moveaxis(cell, -1, 0)), tuple(self.counts.ravel()), order="F"
         )
@@ -103,13 +111,13 @@ def ranges(
 
     Args:
         area: names the objects.
-        lower, upper: (k, 3) corners.
-        split: (k, 3) the axes to name.
+        lower, upper: (k, c) corners.
+        split: (k, c) the axes to name.
         digits: behind the point.
     """
     several = len(area.objects) > 1
     parts = [
-        f"{area.objects[i].name + ' ' if several else ''}{AXES[j]} "
+        f"{area.objects[i].name + ' ' if several else ''}{area.axes[j]} "
         f"{lower[i, j]:.{digits}f}..{upper[i, j]:.{digits}f}"
         for i, j in zip(*np.nonzero(split), strict=True)
     ]
@@ -127,9 +135,9 @@ def grid_regions(area: WorkArea, counts: Mapping[str, int]) -> GridRegions:
     >>> int(regions.index([[0.85, 0.1, 0.0]]))
     5
     """
-    table = np.ones((len(area.objects), 3), dtype=np.int64)
+    table = np.ones((len(area.objects), len(area.axes)), dtype=np.int64)
     for key, count in counts.items():
         name, _, axis = key.rpartition(".")
         names = [o.name for o in area.objects]
-        table[names.index(name) if name else 0, AXES.index(axis)] = count
+        table[names.index(name) if name else 0, area.axes.index(axis)] = count
     return GridRegions(area, table)

@@ -2,6 +2,10 @@
 
 Instance i of a region in a round is a function of (seed, round, region, i) alone: how many are
 asked for at a time, in which order, and by how many workers makes no difference.
+
+Where objects must not overlap, an instance in which they do is replaced by the one at its place in
+the next of an endless row of such streams, until they do not: what is left is uniform in the rest
+of the region, and still such a function.
 """
 
 from __future__ import annotations
@@ -9,10 +13,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from drake_screw.errors import ScenarioError
 from drake_screw.tasks.regions import Regions
+from drake_screw.tasks.work_area import PLANAR, WorkArea
 from drake_screw.typing import Array
 
 CHUNK = 1024
+
+MORE, AGAIN = 1, 2
+"""Of the keys of streams: the axes beyond x, y, yaw; what takes the place of overlapping objects.
+"""
+
+MOST = 2000
+"""Places of an instance that are tried before a region counts as one in which nothing is left: of
+an instance where a hundredth is left that is less likely than 2e-9."""
 
 
 def uniform(
@@ -47,7 +61,8 @@ def uniform(
 def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, count: int) -> Array:
     """Instances drawn uniformly and independently in one region.
 
-    They are the stream of `uniform` with key (round, region).
+    Their x, y, yaw are the stream of `uniform` with key (round, region), further axes that with key
+    (round, region, MORE).
 
     Args:
         regions: the partition.
@@ -57,7 +72,10 @@ def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, co
         start, count: which instances of the round's stream.
 
     Returns:
-        x_y_yaw: (count, k, 3) m, m, rad.
+        coordinates: (count, k, c) m and rad.
+
+    Raises:
+        ScenarioError: objects must not overlap, and next to nothing of the region is left.
 
     Drawn at once or one by one, the instances are the same:
 
@@ -70,9 +88,50 @@ def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, co
     >>> bool((draw(regions, 5, seed=0, round=0, start=2, count=1) == together[2:]).all())
     True
     """
-    lower, upper = regions.bounds(region)
-    unit = uniform(lower.shape, seed=seed, key=(round, region), start=start, count=count)
-    return lower + unit * (upper - lower)
+    area, (lower, upper) = regions.area, regions.bounds(region)
+    lower, upper = area.flat(lower), area.flat(upper)
+
+    def candidates(*again: int) -> Array:
+        key, k = (round, region, *again), len(lower)
+        unit = uniform((k, PLANAR), seed=seed, key=key, start=start, count=count)
+        if lower.shape[1] > PLANAR:
+            more = (k, lower.shape[1] - PLANAR)
+            others = uniform(more, seed=seed, key=(*key, MORE), start=start, count=count)
+            unit = np.concatenate([unit, others], axis=-1)
+        return area.curved(lower + unit * (upper - lower))
+
+    found = candidates()
+    bad = np.flatnonzero(area.overlaps(found))
+    for attempt in range(MOST):
+        if len(bad) == 0:
+            return found
+        found[bad] = candidates(AGAIN, attempt)[bad]
+        bad = bad[area.overlaps(found[bad])]
+    raise ScenarioError(
+        f"region {region} ({regions.name(region)}): objects overlap at each of {MOST:,} places "
+        "drawn in it, so that next to nothing of it is left",
+        remedy="Give the objects more room, cut them fewer cells, or leave `apart` out.",
+    )
+
+
+def anywhere(area: WorkArea, rng: np.random.Generator, count: int) -> Array:
+    """Instances (count, k, c) drawn uniformly from the whole work area.
+
+    Raises:
+        ScenarioError: objects must not overlap, and next to nothing of the area is left.
+    """
+    lower, upper = area.flat(area.lower), area.flat(area.upper)
+    found = area.curved(rng.uniform(lower, upper, (count, *lower.shape)))
+    bad = np.flatnonzero(area.overlaps(found))
+    for _ in range(MOST):
+        if len(bad) == 0:
+            return found
+        found[bad] = area.curved(rng.uniform(lower, upper, (len(bad), *lower.shape)))
+        bad = bad[area.overlaps(found[bad])]
+    raise ScenarioError(
+        f"objects overlap at each of {MOST:,} places drawn in the work area",
+        remedy="Give the objects more room, or leave `apart` out.",
+    )
 
 
 def draw_in_all(
@@ -93,7 +152,7 @@ def draw_in_all(
         starts: the first of each region's stream, as `counts`.
 
     Returns:
-        x_y_yaw: (N, k, 3) m, m, rad, where N is the sum of `counts`.
+        coordinates: (N, k, c) m and rad, where N is the sum of `counts`.
         region: (N,) of each.
 
     >>> from drake_screw.tasks import ObjectArea, WorkArea, grid_regions

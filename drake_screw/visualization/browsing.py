@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from drake_screw.planning import Outcomes
 from drake_screw.typing import Array
+from drake_screw.visualization.cells import Axes
 from drake_screw.visualization.rounds import Round
 
 SUCCESSES = 200
@@ -26,7 +27,7 @@ class Catalogue:
         region: (c,) the region of each.
         segment: (c,) the segment in which the best attempt failed.
         failing: how many fail.
-        drawn_object: the object that maps show.
+        axes: that maps show.
     """
 
     event: Round
@@ -34,7 +35,7 @@ class Catalogue:
     region: NDArray[np.int64]
     segment: NDArray[np.int64]
     failing: int
-    drawn_object: int
+    axes: Axes
 
     def of_region(self, region: int | None) -> NDArray[np.int64]:
         """Places (p,) in the catalogue of one region's instances, or of all."""
@@ -42,9 +43,9 @@ class Catalogue:
             return np.arange(len(self.instance))
         return np.flatnonzero(self.region == region)
 
-    def x_y_yaw(self, place: int) -> Array:
-        """(k, 3) m, m, rad, of a place in the catalogue."""
-        return self.event.evaluation.x_y_yaw[self.instance[place]]
+    def coordinates(self, place: int) -> Array:
+        """(k, c) m and rad, of a place in the catalogue."""
+        return self.event.evaluation.coordinates[self.instance[place]]
 
     def outcomes(self, place: int) -> Outcomes:
         """(D,) of a place in the catalogue."""
@@ -54,23 +55,25 @@ class Catalogue:
         """The place of the instance that the next demonstration is wanted at."""
         if self.event.suggestion is None or self.failing == 0:
             return None
-        return self.nearest(self.event.suggestion.x_y_yaw, np.arange(self.failing))
+        return self.nearest(self.event.suggestion.coordinates, np.arange(self.failing))
 
-    def nearest(self, x_y_yaw: ArrayLike, among: NDArray[np.int64]) -> int | None:
-        """The place, among some, of the instance nearest to x, y, yaw (k, 3)."""
+    def nearest(self, coordinates: ArrayLike, among: NDArray[np.int64]) -> int | None:
+        """The place, among some, of the instance nearest to coordinates (k, c)."""
         if len(among) == 0:
             return None
-        there = self.event.evaluation.x_y_yaw[self.instance[among]]
-        away = np.linalg.norm((there - np.asarray(x_y_yaw)).reshape(len(among), -1), axis=1)
+        there = self.event.evaluation.coordinates[self.instance[among]]
+        away = np.linalg.norm((there - np.asarray(coordinates)).reshape(len(among), -1), axis=1)
         return int(among[away.argmin()])
 
     def nearest_to(self, x: float, y: float) -> int | None:
         """The place of the instance nearest to a point of the map, those that fail first.
 
-        An instance that succeeds is taken only where none that fails is within 3 cm.
+        x and y are along the map's axes, upwards and to the left. An instance that succeeds is
+        taken only where none that fails is within 0.03 (m or rad).
         """
-        drawn = self.drawn_object
-        p = self.event.evaluation.x_y_yaw[self.instance, drawn, :2]
+        (i, a), (j, b) = self.axes
+        there = self.event.evaluation.coordinates[self.instance]
+        p = np.stack([there[:, i, a], there[:, j, b]], axis=-1)
         if len(p) == 0:
             return None
         away = np.linalg.norm(p - np.array([x, y]), axis=1)
@@ -92,13 +95,13 @@ class Catalogue:
         return 0 if len(self.instance) else None
 
 
-def catalogue(event: Round, region: NDArray[np.int64], drawn_object: int) -> Catalogue:
+def catalogue(event: Round, region: NDArray[np.int64], axes: Axes) -> Catalogue:
     """The catalogue of a round.
 
     Args:
         event: the round.
         region: (N,) the region of each instance.
-        drawn_object: the object that maps show.
+        axes: that maps show.
     """
     outcomes = event.evaluation.outcomes
     success = outcomes.any_success
@@ -111,4 +114,4 @@ def catalogue(event: Round, region: NDArray[np.int64], drawn_object: int) -> Cat
     instance = np.concatenate([failing[order], well])
     last = np.full(len(well), np.iinfo(np.int16).max, dtype=np.int64)
     segments = np.concatenate([segment[order], last])
-    return Catalogue(event, instance, region[instance], segments, len(failing), drawn_object)
+    return Catalogue(event, instance, region[instance], segments, len(failing), axes)

@@ -8,21 +8,23 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from drake_screw.typing import Array
+from drake_screw.visualization.cells import Cells
 from drake_screw.visualization.palette import failure_color, ink_on
-from drake_screw.visualization.rounds import Cells, Round
+from drake_screw.visualization.rounds import Round
 
 LEAST_TEXT = 4.0
 MARK = 11.0
 """Diameter in points of the mark of a demonstration."""
 
 
-def write_estimates(ax: Axes, drawn: Cells, event: Round) -> None:
+def write_estimates(ax: Axes, drawn: Cells, event: Round, *, mean: bool = False) -> None:
     """Write estimate and counts into each cell, as large as it has room for, or nothing.
 
     Args:
         ax: with its limits and aspect set.
         drawn: the cells.
         event: the round. Text makes way for its demonstrations and its suggestion.
+        mean: write the mean of the regions above one another, which has no counts.
     """
     ax.apply_aspect()
     marks = _marks(drawn, event)
@@ -37,12 +39,13 @@ def write_estimates(ax: Axes, drawn: Cells, event: Round) -> None:
         text = np.array([1.1 * size / height, 1.75 * size / width])
         gap = text + MARK / 2.0 / np.array([height, width])
         x, y = _clear_spot(drawn.lower[cell], drawn.upper[cell], marks, text, gap)
-        background = failure_color(verdict.estimates[region])
+        value = float(drawn.mean[cell] if mean else verdict.estimates[region])
+        background = failure_color(value)
         behind = {"boxstyle": "round,pad=0.1", "fc": tuple(background), "lw": 0, "alpha": 0.75}
         style = {"color": ink_on(background), "ha": "center", "zorder": 6, "bbox": behind}
-        known = verdict.samples[region] > 0
-        estimate = f"{verdict.estimates[region]:.3f}" if known else "?"
-        below = 0.6 * size >= LEAST_TEXT
+        known = not np.isnan(value) and (mean or verdict.samples[region] > 0)
+        estimate = f"{value:.3f}" if known else "?"
+        below = 0.6 * size >= LEAST_TEXT and not mean
         align = "bottom" if below else "center"
         ax.text(y, x, estimate, fontsize=size, fontweight="bold", va=align, **style)
         if below:
@@ -52,9 +55,9 @@ def write_estimates(ax: Axes, drawn: Cells, event: Round) -> None:
 
 def _marks(drawn: Cells, event: Round) -> Array:
     """(m, 2) x, y of what must not lie under text."""
-    places = [d.X_WO[drawn.object, :2, 3] for d in event.demonstrations]
+    places = [drawn.place_of(d.X_WO) for d in event.demonstrations]
     if event.suggestion is not None:
-        places.append(event.suggestion.x_y_yaw[drawn.object, :2])
+        places.append(drawn.place(event.suggestion.coordinates))
     return np.array(places).reshape(-1, 2)
 
 

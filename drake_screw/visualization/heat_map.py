@@ -6,8 +6,6 @@ x grows upwards, away from the robot; y grows to the left, as it does for the ro
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -23,7 +21,8 @@ from drake_screw.planning import Cause
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.cell_text import MARK, write_estimates
-from drake_screw.visualization.figure_files import save_figure
+from drake_screw.visualization.cells import Axes as PlaneAxes
+from drake_screw.visualization.cells import Cells, cells
 from drake_screw.visualization.outlines import Outline, draw_outlines, outline_handle, widened
 from drake_screw.visualization.palette import (
     ACCENT,
@@ -34,7 +33,7 @@ from drake_screw.visualization.palette import (
     failure_color,
     failure_map,
 )
-from drake_screw.visualization.rounds import Cells, Round, Sample, cells, details, headline, sample
+from drake_screw.visualization.rounds import Round, Sample, sample
 
 MOST_DOTS = 1500
 SHAPES = {
@@ -57,11 +56,13 @@ def draw_heat_map(
     dots: int = MOST_DOTS,
     text: bool = True,
     things: Sequence[Outline] = (),
+    axes: PlaneAxes | None = None,
+    mean: bool = False,
 ) -> Sample:
     """Draw one round into `ax`: estimates, instances, demonstrations, weakest region, suggestion.
 
     Cells are coloured by estimated failure probability, always on the scale from 0 to 1. Where
-    several regions lie above one another a cell shows the worst of them.
+    several regions lie above one another a cell shows the worst of them, or the mean.
 
     Args:
         ax: gets limits, an equal aspect and axis labels.
@@ -70,86 +71,29 @@ def draw_heat_map(
         dots: most instances to draw; more are thinned to a random sample.
         text: write estimates and counts into the cells, numbers at the demonstrations, and names of
             obstacles.
-        things: obstacles in the work area or near it.
+        things: obstacles in the work area or near it; drawn where they lie in the same plane.
+        axes: of the plane, `usual_axes` if None.
+        mean: show the mean of the regions above one another, not the worst.
 
     Returns:
         The instances that were drawn.
     """
-    drawn = cells(regions, event.verdict.estimates)
+    drawn = cells(regions, event.verdict.estimates, axes)
     shown = sample(event.evaluation, dots)
     _frame(ax, drawn, things)
-    _draw_cells(ax, drawn, event)
+    _draw_cells(ax, drawn, event, mean)
     _draw_instances(ax, drawn, shown)
     if text:
-        write_estimates(ax, drawn, event)
-    draw_outlines(ax, things, text=text)
-    _draw_robot(ax, text)
+        write_estimates(ax, drawn, event, mean=mean)
+    if drawn.in_world:
+        draw_outlines(ax, things, text=text)
+        _draw_robot(ax, text)
     _draw_demonstrations(ax, drawn, event, text)
     if event.suggestion is not None:
-        x, y = event.suggestion.x_y_yaw[drawn.object, :2]
+        x, y = drawn.place(event.suggestion.coordinates)
         look = _marker("*", ACCENT, 19.0 if text else 11.0, INK)
         ax.plot(y, x, **look, zorder=8, gid="suggestion")
     return shown
-
-
-def heat_map_figure(
-    event: Round,
-    regions: Regions,
-    *,
-    scenario: str = "",
-    dots: int = MOST_DOTS,
-    things: Sequence[Outline] = (),
-) -> Figure:
-    """A figure of one round with title, colour bar and legend; not registered with pyplot."""
-    drawn = cells(regions, event.verdict.estimates)
-    lower, upper = extent(drawn, things)
-    depth, width = upper - lower
-    height = float(np.clip(7.6 * depth / max(width, 1e-9), 2.2, 7.6))
-    caption = fill(_caption(event, regions, drawn), 120)
-    height += 0.2 * caption.count("\n") + (0.3 if things else 0.0)
-    figure = Figure(figsize=(9.6, height + 1.6), layout="constrained")
-    ax = figure.add_subplot()
-    figure.get_layout_engine().execute(figure)
-    shown = draw_heat_map(ax, event, regions, dots=dots, things=things)
-    title = f"{scenario}: {headline(event)}" if scenario else headline(event)
-    blank = "\n" * (1 + caption.count("\n"))
-    ax.set_title(title + blank, fontsize=12, fontweight="bold", loc="left", color=INK)
-    offset = {"xytext": (0, 6), "textcoords": "offset points", "va": "bottom"}
-    ax.annotate(caption, (0, 1), xycoords="axes fraction", fontsize=8.5, color=INK, **offset)
-    add_colour_bar(figure, ax.inset_axes((1.015, 0.0, 0.02, 1.0)))
-    figure.legend(
-        handles=legend_handles(event, shown, things),
-        title=shown.statement,
-        title_fontsize=8.5,
-        fontsize=8.5,
-        loc="outside lower center",
-        ncols=7,
-        frameon=False,
-        columnspacing=1.4,
-        handletextpad=0.4,
-    )
-    return figure
-
-
-def save_heat_map(
-    event: Round,
-    regions: Regions,
-    stem: str | Path,
-    *,
-    scenario: str = "",
-    dots: int = MOST_DOTS,
-    things: Sequence[Outline] = (),
-    svg: bool = False,
-) -> tuple[Path, ...]:
-    """Write `heat_map_figure` as ``<stem>.png``, with `svg` as ``<stem>.svg``, too.
-
-    They have the same bytes every time.
-
-    Returns:
-        The files.
-    """
-    figure = heat_map_figure(event, regions, scenario=scenario, dots=dots, things=things)
-    return save_figure(figure, stem, svg=svg)
 
 
 def add_colour_bar(figure: Figure, ax: Axes) -> None:
@@ -181,19 +125,10 @@ def legend_handles(
 
 
 def extent(drawn: Cells, things: Sequence[Outline] = ()) -> tuple[Array, Array]:
-    """Least and greatest x, y (2,) in m that a picture of cells and of things near them shows."""
+    """Corners (2,) in m or rad of what a picture of cells and of things near them shows."""
+    if not drawn.in_world:
+        return drawn.lower.min(axis=0), drawn.upper.max(axis=0)
     return widened(drawn.lower.min(axis=0), drawn.upper.max(axis=0), things)
-
-
-def _caption(event: Round, regions: Regions, drawn: Cells) -> str:
-    objects = regions.area.objects
-    parts = [details(event, regions)]
-    if drawn.stack > 1:
-        most = "" if drawn.stack * len(drawn.region) == regions.K else "up to "
-        parts.append(f"each cell shows the worst of {most}{drawn.stack} regions")
-    if len(objects) > 1:
-        parts.append(f"places of {objects[drawn.object].name}")
-    return "; ".join(parts)
 
 
 def _frame(ax: Axes, drawn: Cells, things: Sequence[Outline]) -> None:
@@ -201,18 +136,24 @@ def _frame(ax: Axes, drawn: Cells, things: Sequence[Outline]) -> None:
     pad = np.where(upper > lower, 0.0, 0.05)
     ax.set_xlim(upper[1] + pad[1], lower[1] - pad[1])
     ax.set_ylim(lower[0] - pad[0], upper[0] + pad[0])
-    ax.set_aspect("equal")
-    ax.set_xlabel("← to the robot's left      y in m", fontsize=9, color=INK)
-    ax.set_ylabel("x in m      away from the robot →", fontsize=9, color=INK)
+    if drawn.from_above:
+        ax.set_aspect("equal")
+    else:
+        ax.invert_xaxis()
+    sideways, upwards = drawn.label(1), drawn.label(0)
+    if drawn.in_world:
+        sideways, upwards = "← to the robot's left      y in m", "x in m      away from the robot →"
+    ax.set_xlabel(sideways, fontsize=9, color=INK)
+    ax.set_ylabel(upwards, fontsize=9, color=INK)
     ax.tick_params(labelsize=8)
 
 
-def _draw_cells(ax: Axes, drawn: Cells, event: Round) -> None:
-    estimates = event.verdict.estimates
-    for cell, region in enumerate(drawn.region):
+def _draw_cells(ax: Axes, drawn: Cells, event: Round, mean: bool) -> None:
+    estimates = drawn.mean if mean else event.verdict.estimates[drawn.region]
+    for cell in range(len(drawn.region)):
         (x0, y0), (x1, y1) = drawn.lower[cell], drawn.upper[cell]
         box = {"xy": (y0, x0), "width": y1 - y0, "height": x1 - x0}
-        color = tuple(failure_color(estimates[region]))
+        color = tuple(failure_color(estimates[cell]))
         ax.add_patch(Rectangle(**box, facecolor=color, edgecolor=GRID, gid=f"cell{cell}"))
     (x0, y0), (x1, y1) = drawn.outlines[event.verdict.region]
     for edge, line, gid in ((PAPER, 5.0, "halo"), (INK, 2.4, "weakest")):
@@ -224,7 +165,7 @@ def _draw_cells(ax: Axes, drawn: Cells, event: Round) -> None:
 
 def _draw_instances(ax: Axes, drawn: Cells, shown: Sample) -> None:
     for cause in SHAPES:
-        x, y = shown.x_y_yaw[shown.cause == cause, drawn.object, :2].T
+        x, y = drawn.place(shown.coordinates[shown.cause == cause]).T
         if len(x):
             ax.plot(y, x, **_dot(cause), alpha=0.9, zorder=3, gid=f"instances {cause.name}")
 
@@ -245,7 +186,7 @@ def _draw_demonstrations(ax: Axes, drawn: Cells, event: Round, text: bool) -> No
     look = _marker("o", PAPER, MARK if text else 5.0, INK)
     (y0, y1), (x0, x1) = (np.sort(ends) + EDGE for ends in (ax.get_xlim(), ax.get_ylim()))
     for number, demonstration in enumerate(event.demonstrations, start=1):
-        x, y = demonstration.X_WO[drawn.object, :2, 3]
+        x, y = drawn.place_of(demonstration.X_WO)
         clip = {"clip_on": not (y0 <= y <= y1 and x0 <= x <= x1)}
         ax.plot(y, x, **look, **clip, zorder=7, gid=f"demonstration {number}")
         if text:

@@ -10,8 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from drake_screw.errors import listed
 from drake_screw.planning import Cause
 from drake_screw.tasks import Regions
+from drake_screw.visualization.cells import Axes as PlaneAxes
+from drake_screw.visualization.cells import cells
 from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
     add_colour_bar,
@@ -21,7 +24,7 @@ from drake_screw.visualization.heat_map import (
 )
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK, OUTCOME_COLORS, failure_map
-from drake_screw.visualization.rounds import Round, Sample, cells
+from drake_screw.visualization.rounds import Round, Sample
 
 COLUMNS = 3
 DOTS = 400
@@ -98,6 +101,7 @@ def run_figure(
     scenario: str = "",
     beta: float | None = None,
     things: Sequence[Outline] = (),
+    axes: PlaneAxes | None = None,
 ) -> Figure:
     """Small heat maps of all rounds above the progress of the weakest region.
 
@@ -107,13 +111,15 @@ def run_figure(
         scenario: its name, for the title.
         beta: coverage asked for.
         things: obstacles in the work area or near it.
+        axes: of the heat maps, `usual_axes` if None.
     """
     columns = min(COLUMNS, len(events))
     rows = -(-len(events) // columns)
-    drawn = cells(regions[0], events[0].verdict.estimates)
+    drawn = cells(regions[0], events[0].verdict.estimates, axes)
     lower, upper = extent(drawn, things)
     depth, width = upper - lower
     row = float(np.clip(3.4 * depth / max(width, 1e-9), 0.9, 3.4)) + 0.55
+    row = row if drawn.from_above else 2.8
     figure = Figure(figsize=(11.0, rows * row + 3.4), layout="constrained")
     grid = figure.add_gridspec(
         rows + 1,
@@ -122,16 +128,20 @@ def run_figure(
         width_ratios=[1] * columns + [0.03],
     )
     shown: list[tuple[Round, Sample]] = []
+    stacked, several = False, len(drawn.area.objects) > 1 and drawn.from_above
     for i, event in enumerate(events):
         ax = figure.add_subplot(grid[i // columns, i % columns])
-        look = draw_heat_map(ax, event, regions[i], dots=DOTS, text=False, things=things)
+        parts = regions[i]
+        look = draw_heat_map(ax, event, parts, dots=DOTS, text=False, things=things, axes=axes)
+        stacked |= cells(parts, event.verdict.estimates, axes).stack > 1
         shown.append((event, look))
         count = len(event.demonstrations)
         title = f"round {event.round + 1}: {count} demonstration{'' if count == 1 else 's'}"
         ax.set_title(title, fontsize=9, color=INK)
         ax.tick_params(labelsize=7)
-        ax.set_xlabel("")
-        ax.set_ylabel("")
+        if drawn.in_world:
+            ax.set_xlabel("")
+            ax.set_ylabel("")
     add_colour_bar(figure, figure.add_subplot(grid[:rows, columns]))
     draw_progress(figure.add_subplot(grid[rows, :]), events, regions, beta=beta)
     if scenario:
@@ -143,7 +153,9 @@ def run_figure(
         ncols=7,
         frameon=False,
         fontsize=8.5,
-        title=f"at most {DOTS} instances of each round, drawn at random",
+        title=f"at most {DOTS} instances of each round, drawn at random"
+        + (f"; cells show their worst region over {listed(drawn.others)}" if stacked else "")
+        + (f"; places of {drawn.area.objects[drawn.object].name}" if several else ""),
         title_fontsize=8.5,
     )
     return figure
@@ -157,6 +169,7 @@ def save_run_figure(
     scenario: str = "",
     beta: float | None = None,
     things: Sequence[Outline] = (),
+    axes: PlaneAxes | None = None,
     svg: bool = False,
 ) -> tuple[Path, ...]:
     """Write `run_figure` as ``<stem>.png``, with `svg` as ``<stem>.svg``, too.
@@ -166,5 +179,5 @@ def save_run_figure(
     Returns:
         The files.
     """
-    figure = run_figure(events, regions, scenario=scenario, beta=beta, things=things)
+    figure = run_figure(events, regions, scenario=scenario, beta=beta, things=things, axes=axes)
     return save_figure(figure, stem, svg=svg)

@@ -21,8 +21,8 @@ class Instances(Protocol):
     """Task instances and their outcomes."""
 
     @property
-    def x_y_yaw(self) -> Array:
-        """(N, k, 3) m, m, rad."""
+    def coordinates(self) -> Array:
+        """(N, k, c) m and rad."""
 
     @property
     def outcomes(self) -> Outcomes:
@@ -37,8 +37,8 @@ class Place(Protocol):
         """The region it is wanted for."""
 
     @property
-    def x_y_yaw(self) -> Array:
-        """(k, 3) m, m, rad."""
+    def coordinates(self) -> Array:
+        """(k, c) m and rad."""
 
 
 class Round(Protocol):
@@ -70,12 +70,12 @@ class Sample:
     """Some of a round's instances, few enough to draw.
 
     Attributes:
-        x_y_yaw: (n, k, 3) m, m, rad.
+        coordinates: (n, k, c) m and rad.
         cause: (n,) `Cause` values, of the best attempts.
         total: how many instances the round had.
     """
 
-    x_y_yaw: Array
+    coordinates: Array
     cause: NDArray[np.uint8]
     total: int
 
@@ -93,63 +93,11 @@ class Sample:
 
 def sample(evaluation: Instances, most: int) -> Sample:
     """A uniform random subset of at most `most` instances, the same at every call."""
-    total = len(evaluation.x_y_yaw)
+    total = len(evaluation.coordinates)
     chosen = np.arange(total)
     if total > most:
         chosen = np.sort(np.random.default_rng(0).choice(total, most, replace=False))
-    return Sample(evaluation.x_y_yaw[chosen], evaluation.outcomes[chosen].best.cause, total)
-
-
-@dataclass(frozen=True, eq=False)
-class Cells:
-    """The regions seen from above: cells in x and y of one object.
-
-    Where several regions lie above one another (other yaws, other places of other objects) a cell
-    stands for the one with the largest estimate. It is as small as the smallest of them.
-
-    Attributes:
-        object: index of the object, the first that may move in both x and y.
-        lower, upper: (c, 2) x, y of the cells' corners in m.
-        region: (c,) the region that each cell stands for.
-        outlines: (K, 2, 2) x, y of the lower and upper corner of each region.
-        stack: how many regions lie above one another, at most.
-    """
-
-    object: int
-    lower: Array
-    upper: Array
-    region: NDArray[np.int64]
-    outlines: Array
-    stack: int
-
-
-def cells(regions: Regions, estimates: NDArray[np.float64]) -> Cells:
-    """Project regions onto the table.
-
-    The outlines of two regions must be the same, or apart, or one within the other, and none may
-    be covered but for a part by others within it; those of a grid and of a dyadic tree are so.
-
-    Args:
-        regions: of the work area.
-        estimates: (K,) failure probability, NaN where unknown.
-    """
-    extent = regions.area.upper - regions.area.lower
-    drawn = int((extent[:, :2] > 0.0).all(axis=1).argmax())
-    outlines = np.stack(regions.bounds(np.arange(regions.K)), axis=1)[:, :, drawn, :2]
-    _, first = np.unique(outlines, axis=0, return_index=True)
-    tiles = outlines[np.sort(first)]
-    tiles = tiles[[np.count_nonzero(_covers(tile, tiles)) == 1 for tile in tiles]]
-    above = np.array([_covers(outlines, tile) for tile in tiles])
-    worst = np.where(above, np.nan_to_num(estimates, nan=-1.0), -2.0).argmax(axis=1)
-    stack = int(above.sum(axis=1).max())
-    return Cells(drawn, tiles[:, 0], tiles[:, 1], worst, outlines, stack)
-
-
-def _covers(outer: Array, inner: Array) -> NDArray[np.bool_]:
-    """Whether rectangles (..., 2, 2) of lower and upper corner cover others (..., 2, 2)."""
-    slack = 1e-9
-    lower = outer[..., 0, :] <= inner[..., 0, :] + slack
-    return np.all(lower & (outer[..., 1, :] >= inner[..., 1, :] - slack), axis=-1)
+    return Sample(evaluation.coordinates[chosen], evaluation.outcomes[chosen].best.cause, total)
 
 
 def headline(event: Round) -> str:

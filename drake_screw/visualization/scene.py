@@ -13,20 +13,18 @@ from pathlib import Path
 import numpy as np
 from pydrake.geometry import (
     Meshcat,
-    MeshcatVisualizer,
-    MeshcatVisualizerParams,
 )
 from pydrake.perception import BaseField, Fields, PointCloud
-from pydrake.planning import RobotDiagramBuilder
 
 from drake_screw.demonstrations import Demonstration
 from drake_screw.files import write_text
 from drake_screw.planning import Cause
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
-from drake_screw.robot.parts import add_robot, add_surroundings
+from drake_screw.screws import pose_from_planar
 from drake_screw.tasks import Regions, WorkArea
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes
+from drake_screw.visualization.cells import Cells, cells, table_axes
 from drake_screw.visualization.drawing import draw, draw_frames, rgba
 from drake_screw.visualization.legend import Slide, slide, with_legend
 from drake_screw.visualization.palette import (
@@ -38,7 +36,8 @@ from drake_screw.visualization.palette import (
     failure_color,
     linear_from_srgb,
 )
-from drake_screw.visualization.rounds import Cells, Round, Sample, cells, sample
+from drake_screw.visualization.rounds import Round, Sample, sample
+from drake_screw.visualization.workcell_drawing import draw_workcell
 
 MOST_DOTS = 6_000
 CLAY = "#efeee6"
@@ -97,7 +96,7 @@ class Scene:
         meshcat.SetProperty("/Axes", "visible", False)
         meshcat.SetProperty("/Background", "top_color", SKY[0])
         meshcat.SetProperty("/Background", "bottom_color", SKY[1])
-        _draw_workcell(meshcat, robot, table, obstacles)
+        draw_workcell(meshcat, robot, table, obstacles)
         self._draw_area()
         self._aim_camera()
 
@@ -110,10 +109,10 @@ class Scene:
         path = _round_path(event.round)
         self._hide_rounds()
         self.meshcat.Delete(path)
-        drawn = cells(regions, event.verdict.estimates)
+        drawn = cells(regions, event.verdict.estimates, table_axes(self._area))
         self._draw_regions(path, drawn, event)
         if event.suggestion is not None:
-            self._draw_suggestion(f"{path}/next", event.suggestion.x_y_yaw)
+            self._draw_suggestion(f"{path}/next", event.suggestion.coordinates)
         self.meshcat.SetProperty(path, "visible", True)
         self._draw_demonstrations(event.demonstrations, drawn)
         shown = sample(event.evaluation, self._dots)
@@ -136,18 +135,18 @@ class Scene:
             regions: what they are of.
             demonstrations: in hand.
         """
-        drawn = cells(regions, rates)
+        drawn = cells(regions, rates, table_axes(self._area))
         if not self.meshcat.HasPath("/progress/regions"):
             self._hide_rounds()
             self.meshcat.Delete("/instances")
             self._draw_demonstrations(demonstrations, drawn)
         self._draw_tiles("/progress/regions", drawn, rates)
 
-    def show_suggestion(self, x_y_yaw: Array) -> None:
-        """Let the place (k, 3) of a wanted demonstration glow, and no other."""
+    def show_suggestion(self, coordinates: Array) -> None:
+        """Let the place (k, c) of a wanted demonstration glow, and no other."""
         if self._slides:
             self.meshcat.Delete(f"{_round_path(max(self._slides))}/next")
-        self._draw_suggestion("/progress/next", x_y_yaw)
+        self._draw_suggestion("/progress/next", coordinates)
 
     def clear_suggestion(self) -> None:
         """Let no place glow."""
@@ -172,22 +171,24 @@ class Scene:
             self.meshcat.SetProperty(_round_path(earlier), "visible", False)
 
     def _draw_area(self) -> None:
-        for item, z in zip(self._area.objects, self._area.z, strict=True):
+        for i, item in enumerate(self._area.objects):
             lower, upper = np.array(item.lower[:2]) - 0.006, np.array(item.upper[:2]) + 0.006
-            outline = meshes.frame(lower, upper, self._above(float(z)), 0.006)
-            draw(self.meshcat, f"/work_area/{item.name}", outline, INK)
+            outline = meshes.frame(lower, upper, self._height(i), 0.006)
+            draw(self.meshcat, f"/work_area/{item.name}", outline.moved(self._X_WP(i)), INK)
 
     def _aim_camera(self) -> None:
-        lower, upper = self._area.lower[:, :2].min(axis=0), self._area.upper[:, :2].max(axis=0)
-        middle, z = (lower + upper) / 2.0, float(self._area.z.min())
+        stands = np.array([item.on is None for item in self._area.objects])
+        lower = self._area.lower[stands, :2].min(axis=0)
+        upper = self._area.upper[stands, :2].max(axis=0)
+        middle, z = (lower + upper) / 2.0, float(self._area.z[stands].min())
         size = max(float(np.linalg.norm(upper - lower)), 0.6)
         target = np.array([*(middle * [0.8, 0.45]), z + 0.14 * size])
         self.meshcat.SetCameraPose(target + size * np.array([1.12, -0.15, 0.84]), target)
 
     def _draw_tiles(self, path: str, drawn: Cells, rates: Array) -> float:
         """The regions coloured by failure rates (K,); returns the height they lie at."""
-        z = self._above(float(self._area.z[drawn.object]))
-        tiles = meshes.rectangles(drawn.lower, drawn.upper, z)
+        z = self._height(drawn.object)
+        tiles = meshes.rectangles(drawn.lower, drawn.upper, z).moved(self._X_WP(drawn.object))
         color = np.repeat(_vertex_color(failure_color(rates[drawn.region])), 4, axis=0)
         self.meshcat.SetTriangleColorMesh(path, tiles.vertices.T, tiles.faces.T, color.T)
         return z
@@ -195,13 +196,14 @@ class Scene:
     def _draw_regions(self, path: str, drawn: Cells, event: Round) -> None:
         z = self._draw_tiles(f"{path}/regions", drawn, event.verdict.estimates)
         lower, upper = drawn.outlines[event.verdict.region]
-        inner = meshes.frame(lower, upper, z + 0.001, 0.014)
-        outer = meshes.frame(lower, upper, z + 0.0015, 0.008)
+        X_WP = self._X_WP(drawn.object)
+        inner = meshes.frame(lower, upper, z + 0.001, 0.014).moved(X_WP)
+        outer = meshes.frame(lower, upper, z + 0.0015, 0.008).moved(X_WP)
         draw(self.meshcat, f"{path}/weakest/halo", inner, PAPER)
         draw(self.meshcat, f"{path}/weakest/line", outer, INK)
 
-    def _draw_suggestion(self, path: str, x_y_yaw: Array) -> None:
-        for item, X_WO in zip(self._objects, self._area.X_WO(x_y_yaw), strict=True):
+    def _draw_suggestion(self, path: str, coordinates: Array) -> None:
+        for item, X_WO in zip(self._objects, self._area.X_WO(coordinates), strict=True):
             bowl = meshes.bowl(item.radius, item.height).moved(X_WO)
             ring = meshes.ring(1.25 * item.radius, 0.008).moved(X_WO)
             draw(self.meshcat, f"{path}/{item.name}/object", bowl, ACCENT, 0.65)
@@ -230,16 +232,28 @@ class Scene:
 
     def _draw_instances(self, shown: Sample, drawn: Cells) -> None:
         self.meshcat.Delete("/instances")
-        z = self._above(float(self._area.z[drawn.object])) + 0.002
+        flat = self._area.objects[drawn.object].height is not None
         for cause, name in OUTCOME_NAMES.items():
-            x_y = shown.x_y_yaw[shown.cause == cause, drawn.object, :2]
-            if len(x_y) == 0:
+            p_WO = self._area.X_WO(shown.coordinates[shown.cause == cause])[:, drawn.object, :3, 3]
+            if len(p_WO) == 0:
                 continue
-            cloud = PointCloud(len(x_y), Fields(BaseField.kXYZs))
-            cloud.mutable_xyzs()[:] = np.column_stack([x_y, np.full(len(x_y), z)]).T
+            if flat:
+                p_WO[:, 2] = self._height(drawn.object) + 0.002
+            cloud = PointCloud(len(p_WO), Fields(BaseField.kXYZs))
+            cloud.mutable_xyzs()[:] = p_WO.T
             size = 0.003 if cause == Cause.SUCCESS else 0.006
             path = f"/instances/{name}"
             self.meshcat.SetObject(path, cloud, size, rgba(OUTCOME_COLORS[cause]))
+
+    def _X_WP(self, i: int) -> Array:
+        """What object i's x, y are seen from: the world, or what it stands on, but level."""
+        X_WP = self._area.X_WP(i)
+        level: Array = pose_from_planar([*X_WP[:2, 3], np.arctan2(X_WP[1, 0], X_WP[0, 0])])
+        return level
+
+    def _height(self, i: int) -> float:
+        """Just above the least height of object i in the world."""
+        return self._above(float(self._area.z[i] + self._area.X_WP(i)[2, 3]))
 
     def _above(self, z: float) -> float:
         """Just above the table, so that what lies flat at height z is not inside of it."""
@@ -248,27 +262,6 @@ class Scene:
 
 def _round_path(number: int) -> str:
     return f"/rounds/{number + 1:02d}"
-
-
-def _draw_workcell(
-    meshcat: Meshcat,
-    robot: RobotConfig,
-    table: TableConfig | None,
-    obstacles: Sequence[ObstacleConfig],
-) -> None:
-    builder = RobotDiagramBuilder(time_step=0.0)
-    plant = builder.plant()
-    added = add_robot(builder.parser(), robot)
-    add_surroundings(plant, table, obstacles=obstacles)
-    plant.Finalize()
-    arm = added.arm()
-    parameters = MeshcatVisualizerParams(prefix="/workcell")
-    MeshcatVisualizer.AddToBuilder(builder.builder(), builder.scene_graph(), meshcat, parameters)
-    diagram = builder.Build()
-    context = diagram.CreateDefaultContext()
-    positions = arm.full_positions(np.array(robot.start, dtype=float))
-    plant.SetPositions(plant.GetMyMutableContextFromRoot(context), positions)
-    diagram.ForcedPublish(context)
 
 
 def _draw_token(meshcat: Meshcat, path: str, number: int, X_WT: Array) -> None:

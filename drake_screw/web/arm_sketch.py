@@ -21,6 +21,9 @@ _WOOD, _CLAY, _STONE, _STEEL, _QUIET = "#e3d9c6", "#f4c95d", "#cdd1d8", "#a9c4e4
 BESIDE = 0.3
 """m, that obstacles are shown of beyond all else."""
 
+UPRIGHT = np.cos(0.02)
+"""Cosine of the tilt from which on an object is drawn as the cylinder it is."""
+
 
 def arm_sketch(
     attempt: Attempt,
@@ -76,10 +79,15 @@ def _view(
     things = outlines(obstacles, P)
     parts += [_polygon(seen.corners, _STONE) for seen in things]
     if not upright:
-        for item in area.objects:
+        for i, item in enumerate(area.objects):
             low, high = np.array([*item.lower[:2], 0.0]), np.array([*item.upper[:2], 0.0])
+            X_WP = area.X_WP(i)
+            low, high = (X_WP[:3, :3] @ p + X_WP[:3, 3] for p in (low, high))
             parts.append(_box(P @ low, P @ high, "none", INK))
     for shape, X in zip(objects, attempt.X_WO, strict=True):
+        if X[2, 2] < UPRIGHT:
+            parts.append(_polygon(convex_outline(_rims(shape, X) @ P.T), _CLAY))
+            continue
         x, y = 1e3 * (P @ X[:3, 3])
         r, h = 1e3 * shape.radius, 1e3 * shape.height
         parts.append(
@@ -126,6 +134,14 @@ def _held(attempt: Attempt, tool: ToolConfig | None) -> list[Array]:
     p_TP = tool.shape.corners()
     X_WT = attempt.arm.pose(attempt.plan.q[[0, -1]]) @ X_ET
     return [p_TP @ X[:3, :3].T + X[:3, 3] for X in X_WT]
+
+
+def _rims(shape: ObjectConfig, X_WO: Array) -> Array:
+    """(48, 3) m, points of the rims of an object's cylinder in W."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    x, y = shape.radius * np.cos(angle), shape.radius * np.sin(angle)
+    rims = [np.stack([x, y, np.full_like(x, z)], axis=-1) for z in (0.0, shape.height)]
+    return np.concatenate(rims) @ X_WO[:3, :3].T + X_WO[:3, 3]
 
 
 def _line(points: Array, color: str, width: float, opacity: float = 1.0) -> str:

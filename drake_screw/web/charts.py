@@ -8,11 +8,13 @@ import numpy as np
 from markupsafe import Markup, escape
 from matplotlib.colors import to_hex
 
+from drake_screw.errors import listed
 from drake_screw.planning import Cause
 from drake_screw.screws.endless import drawn_range
 from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import FAILED, Attempt
+from drake_screw.visualization.cells import axis_name, cells
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import (
     ACCENT,
@@ -22,7 +24,7 @@ from drake_screw.visualization.palette import (
     STATUS_COLORS,
     failure_color,
 )
-from drake_screw.visualization.rounds import Round, Sample, cells, sample
+from drake_screw.visualization.rounds import Round, Sample, sample
 
 MAP_DOTS = 2_000
 _LINE, _FAINT = "#2b4c7e", "#c9cbd3"
@@ -131,7 +133,7 @@ def work_area_map(
     Args:
         event: the round.
         regions: of the run.
-        here: (k, 3) an instance to mark.
+        here: (k, c) an instance to mark.
         dots: of so many instances, drawn at random, those that fail are drawn.
         things: obstacles, which are drawn as far as they are in the work area.
     """
@@ -154,32 +156,32 @@ def work_area_map(
     shown = sample(event.evaluation, dots)
     for cause, color in OUTCOME_COLORS.items():
         chosen = (shown.cause == cause) & (cause != Cause.SUCCESS)
-        points = shown.x_y_yaw[chosen, drawn.object, :2]
+        points = drawn.place(shown.coordinates[chosen])
         path = "".join(f"M{u:.0f} {v:.0f}h0" for u, v in (place(x, y) for x, y in points))
         if path:
             parts.append(
                 f'<path d="{path}" stroke="{color}" stroke-width="9" stroke-linecap="round"/>'
             )
-    for thing in things:
+    for thing in things if drawn.in_world else ():
         edge = " ".join(f"{u:.0f},{v:.0f}" for u, v in (place(x, y) for x, y in thing.corners))
         parts.append(
             f'<polygon points="{edge}" fill="{PAPER}" fill-opacity="0.45" stroke="{INK}" '
             f'stroke-width="5" pointer-events="none" class="obstacle"/>'
         )
     for number, demonstration in enumerate(event.demonstrations, start=1):
-        u, v = place(*demonstration.X_WO[drawn.object, :2, 3])
+        u, v = place(*drawn.place_of(demonstration.X_WO))
         parts.append(
             f'<circle cx="{u:.1f}" cy="{v:.1f}" r="26" fill="{PAPER}" stroke="{INK}" '
             f'stroke-width="4"/><text x="{u:.1f}" y="{v + 12:.1f}" text-anchor="middle" '
             f'class="token">{number}</text>'
         )
     marks: Sequence[tuple[Array | None, str, str]] = (
-        (None if event.suggestion is None else event.suggestion.x_y_yaw, ACCENT, "suggested"),
+        (None if event.suggestion is None else event.suggestion.coordinates, ACCENT, "suggested"),
         (here, INK, "here"),
     )
-    for x_y_yaw, color, name in marks:
-        if x_y_yaw is not None:
-            u, v = place(*x_y_yaw[drawn.object, :2])
+    for coordinates, color, name in marks:
+        if coordinates is not None:
+            u, v = place(*drawn.place(coordinates))
             parts.append(
                 f'<circle cx="{u:.1f}" cy="{v:.1f}" r="{20 if name == "suggested" else 32}" '
                 f'fill="{color if name == "suggested" else "none"}" stroke="{INK}" '
@@ -191,7 +193,14 @@ def work_area_map(
     )
 
 
-def map_words(event: Round, shown: Sample) -> str:
+def map_words(event: Round, shown: Sample, regions: Regions) -> str:
     """What the dots of `work_area_map` are, and how many of the instances `shown` in 3-D."""
     words = f"dots: what fails of {sample(event.evaluation, MAP_DOTS).statement}"
+    drawn = cells(regions, event.verdict.estimates)
+    if drawn.others or not drawn.in_world:
+        up, aside = (axis_name(drawn.area, axis) for axis in drawn.axes)
+        words = f"{up} upwards, {aside} to the left; {words}"
+    if drawn.others:
+        how = "the worst region" if drawn.stack > 1 else "the mean"
+        words += f"; colours: {how} over {listed(drawn.others)}"
     return words if len(shown.cause) == shown.total else f"{words} (in 3-D: {len(shown.cause):,})"

@@ -55,7 +55,7 @@ def panel_state(
     here, attempts = None, []
     instance: dict[str, Any] = {"key": None, "where": "no instance", "which": ""}
     if selection.instance is not None:
-        here = event.evaluation.x_y_yaw[selection.instance]
+        here = event.evaluation.coordinates[selection.instance]
         found = reader.outcomes(selection.round, selection.instance)
         attempts = [
             attempt_entry(
@@ -87,7 +87,7 @@ def panel_state(
         "selected": selection.demonstration,
         "headline": round_headline(event),
         "map": work_area_map(event, regions, here=here, things=outlines(reader.setup.obstacles)),
-        "map_words": map_words(event, sample(event.evaluation, MOST_DOTS)),
+        "map_words": map_words(event, sample(event.evaluation, MOST_DOTS), regions),
     }
 
 
@@ -168,7 +168,9 @@ def describe_instance(reader: RunReader, selection: Selection) -> str:
     book = reader.catalogue(selection.round)
     event = reader.event(selection.round)
     region = int(event.evaluation.region[selection.instance])
-    words = f"instance {selection.instance:,} of {len(event.evaluation.x_y_yaw):,}, region {region}"
+    words = (
+        f"instance {selection.instance:,} of {len(event.evaluation.coordinates):,}, region {region}"
+    )
     place = book.find(selection.instance)
     if place is not None and place < book.failing:
         order = book.of_region(selection.region)
@@ -182,12 +184,10 @@ def describe_instance(reader: RunReader, selection: Selection) -> str:
     return words
 
 
-def where(area: WorkArea, x_y_yaw: Array) -> str:
-    """Where the objects of an instance (k, 3) are, in words."""
+def where(area: WorkArea, coordinates: Array) -> str:
+    """Where the objects of an instance (k, c) are, in words."""
     return ", ".join(
-        f"{o.name} at x {x:.3f} m, y {y:.3f} m"
-        + (f", yaw {yaw:.2f} rad" if o.lower[2] != o.upper[2] else "")
-        for o, (x, y, yaw) in zip(area.objects, x_y_yaw.tolist(), strict=True)
+        f"{o.name} at {area.words(i, coordinates)}" for i, o in enumerate(area.objects)
     )
 
 

@@ -48,7 +48,7 @@ class InspectorScene:
         for item in setup.objects:
             self.meshcat.Delete(f"/rounds/{selection.round + 1:02d}/next/{item.name}/object")
         if self._round is None and selection.instance is not None:
-            here = event.evaluation.x_y_yaw[selection.instance]
+            here = event.evaluation.coordinates[selection.instance]
             self._inspector.aim(setup.area.X_WO(here))
         self._round = selection.round
 
@@ -58,7 +58,7 @@ class InspectorScene:
         if selection.instance is None:
             return {}
         event = self._reader.event(selection.round)
-        here = event.evaluation.x_y_yaw[selection.instance]
+        here = event.evaluation.coordinates[selection.instance]
         self._inspector.show_instance(self._reader.setup.area.X_WO(here))
         return {
             number: self._inspector.draw(

@@ -110,7 +110,7 @@ class LivePage:
             case RoundFinished():
                 self._finish_round(event)
             case DemonstrationRequested():
-                self._scene.show_suggestion(event.suggestion.x_y_yaw)
+                self._scene.show_suggestion(event.suggestion.coordinates)
                 words = describe(event, self._setup.regions)
                 self._update(headline=words, color=INK, teach=self._teach)
             case DemonstrationAdded():
@@ -181,7 +181,7 @@ class LivePage:
             details=f"weakest region {weakest}: {event.regions.name(weakest)}; {verdict.reason}",
             color=color,
             map=work_area_map(event, event.regions, things=outlines(self._setup.obstacles)),
-            map_words=f"after round {number}; {map_words(event, shown)}",
+            map_words=f"after round {number}; {map_words(event, shown, event.regions)}",
             rounds=[*self._state["rounds"], line],
         )
 

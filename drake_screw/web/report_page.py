@@ -163,7 +163,7 @@ def _instance(
     return {
         "kind": kind,
         "number": selection.instance,
-        "where": where(setup.area, event.evaluation.x_y_yaw[selection.instance]),
+        "where": where(setup.area, event.evaluation.coordinates[selection.instance]),
         "page": page,
         "attempts": [
             {
@@ -199,7 +199,7 @@ def _others(reader: RunReader, selection: Selection, linkage: Linkage) -> list[d
         others.append(
             {
                 "region": region,
-                "where": where(setup.area, event.evaluation.x_y_yaw[instance]),
+                "where": where(setup.area, event.evaluation.coordinates[instance]),
                 "number": instance,
                 "best": best + 1,
                 "headline": headline(tried),

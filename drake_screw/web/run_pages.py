@@ -100,7 +100,7 @@ class RunPages:
             self._announce(f"give demonstrations at {teach}")
 
     def _teacher(self, setup: Setup) -> InteractiveTeacher:
-        return InteractiveTeacher(self._teaching_page(setup))
+        return InteractiveTeacher(self._teaching_page(setup), setup.area)
 
     def _teaching_page(self, setup: Setup) -> TeachingPage:
         if self.teaching is None:

@@ -108,7 +108,7 @@ class TeachingPage:
         while self._server.message(0.0) is not None:
             pass
         session = TeachingSession(self._setup, self._inspector, suggestion, number)
-        self._scene.show_suggestion(suggestion.x_y_yaw)
+        self._scene.show_suggestion(suggestion.coordinates)
         updated, changed = 0.0, True
         while not session.over:
             message = self._server.message(PERIOD)
@@ -186,4 +186,5 @@ def interactive_teacher(setup: Setup) -> InteractiveTeacher:
     >>> type(Setup(scenario, teacher=interactive_teacher).teacher).__name__
     'InteractiveTeacher'
     """
-    return InteractiveTeacher(TeachingPage(setup, inbox=setup.scenario.teacher.folder))
+    page = TeachingPage(setup, inbox=setup.scenario.teacher.folder)
+    return InteractiveTeacher(page, setup.area)

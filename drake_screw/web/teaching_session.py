@@ -64,7 +64,7 @@ class TeachingSession:
     ) -> None:
         self._setup, self._inspector, self._number = setup, inspector, number
         self._suggestion = suggestion
-        self._X_WO = setup.area.X_WO(suggestion.x_y_yaw)
+        self._X_WO = setup.area.X_WO(suggestion.coordinates)
         self._X_WE_start = setup.workcell.arm.pose(setup.workcell.start)
         self.over = False
         self.accepted: Recording | None = None

@@ -93,7 +93,7 @@ class Obliging:
         self.asked.append(suggestion)
         if number >= self.most:
             return Lesson(None, "no more")
-        x, y, _ = suggestion.x_y_yaw[0]
+        x, y, _ = suggestion.coordinates[0]
         return Lesson(recording_at(f"demo_{number + 1:02d}", x, y), "as asked")
 
 

@@ -35,9 +35,9 @@ def rng(seed: int = 0) -> np.random.Generator:
     return np.random.default_rng(seed)
 
 
-def evaluation(x_y_yaw, failed, segment=0, regions=REGIONS, frontier=()) -> Evaluation:
-    """A round with one demonstration; x_y_yaw (N, k, 3), failed (N,)."""
-    x_y_yaw, failed = np.asarray(x_y_yaw, dtype=float), np.asarray(failed)
+def evaluation(coordinates, failed, segment=0, regions=REGIONS, frontier=()) -> Evaluation:
+    """A round with one demonstration; coordinates (N, k, 3), failed (N,)."""
+    coordinates, failed = np.asarray(coordinates, dtype=float), np.asarray(failed)
     cause = np.where(failed, Cause.JOINT_LIMIT, Cause.SUCCESS).astype(np.uint8)[:, None]
     segment = np.where(failed, segment, -1).astype(np.int16)[:, None]
     outcomes = Outcomes(
@@ -47,9 +47,9 @@ def evaluation(x_y_yaw, failed, segment=0, regions=REGIONS, frontier=()) -> Eval
         np.ones(cause.shape, np.float32),
         np.zeros_like(segment),
     )
-    drawn = Evaluation(x_y_yaw, np.zeros(len(failed), dtype=np.int64), outcomes, frontier)
-    region = drawn.partition(regions).index(x_y_yaw)
-    return Evaluation(x_y_yaw, region, outcomes, frontier)
+    drawn = Evaluation(coordinates, np.zeros(len(failed), dtype=np.int64), outcomes, frontier)
+    region = drawn.partition(regions).index(coordinates)
+    return Evaluation(coordinates, region, outcomes, frontier)
 
 
 def lattice(nx: int = 40, ny: int = 20) -> np.ndarray:
@@ -73,8 +73,8 @@ def test_earliest_takes_the_one_that_got_least_far_and_draws_among_equals_as_eve
         expected = mine[np.lexsort((rng(5).random(len(mine)), segment))]
         np.testing.assert_array_equal(earliest(seen, region, REGIONS, rng(5)), expected)
         first, second, _ = suggest(seen, region, REGIONS, rng(5), count=3)
-        np.testing.assert_array_equal(first.x_y_yaw, places[expected[0]])
-        np.testing.assert_array_equal(second.x_y_yaw, places[expected[1]])
+        np.testing.assert_array_equal(first.coordinates, places[expected[0]])
+        np.testing.assert_array_equal(second.coordinates, places[expected[1]])
         assert first.segment == segment.min() == 0
         assert first.region == region
 
@@ -152,7 +152,7 @@ def test_regions_that_refine_themselves_count_by_their_size() -> None:
     assert large[densest_anywhere(seen, 2, regions, rng())[0]]
     (asked,) = suggest(seen, 2, regions, rng(), rule=densest_anywhere)
     assert asked.region == 0
-    assert regions.index(asked.x_y_yaw) == 0
+    assert regions.index(asked.coordinates) == 0
 
 
 @pytest.mark.parametrize("rule", [earliest, densest, densest_anywhere])
@@ -244,11 +244,11 @@ def test_the_first_demonstration_may_be_asked_for_in_the_middle_and_the_others_n
     (anywhere,) = initial_suggestions(REGIONS, rng(7), 0)
     middle, instead = initial_suggestions(REGIONS, rng(7), 0, settled)
     (second,) = initial_suggestions(REGIONS, rng(7), 1, settled)
-    assert middle.x_y_yaw.tolist() == [[1.0, 0.5, 0.0]]
-    assert middle.region == REGIONS.index(middle.x_y_yaw)
+    assert middle.coordinates.tolist() == [[1.0, 0.5, 0.0]]
+    assert middle.region == REGIONS.index(middle.coordinates)
     drawn = rng(7).uniform(AREA.lower, AREA.upper)
     for place in (anywhere, instead, second):
-        np.testing.assert_array_equal(place.x_y_yaw, drawn)
+        np.testing.assert_array_equal(place.coordinates, drawn)
         assert place.region == REGIONS.index(drawn)
     assert middle.failing.shape == (FAILING, 1, 3)
     assert AREA.contains(middle.failing).all()
@@ -277,9 +277,9 @@ def test_at_the_farthest_corner_the_yaw_is_drawn_and_a_random_place_comes_behind
     settled = first_place("farthest", turning, np.array([0.0, 0.2, 0.5]))
     corner, instead = initial_suggestions(regions, rng(3), 0, settled)
     drawn = rng(3).uniform(turning.lower, turning.upper)
-    assert corner.x_y_yaw.tolist() == [[2.0, 1.0, drawn[0, 2]]]
-    assert corner.region == regions.index(corner.x_y_yaw)
-    np.testing.assert_array_equal(instead.x_y_yaw, drawn)
+    assert corner.coordinates.tolist() == [[2.0, 1.0, drawn[0, 2]]]
+    assert corner.region == regions.index(corner.coordinates)
+    np.testing.assert_array_equal(instead.coordinates, drawn)
     at_random = first_place("random", turning, np.zeros(3))
     (anywhere,) = initial_suggestions(regions, rng(3), 0, at_random)
-    np.testing.assert_array_equal(anywhere.x_y_yaw, drawn)
+    np.testing.assert_array_equal(anywhere.coordinates, drawn)

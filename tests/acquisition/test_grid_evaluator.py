@@ -38,12 +38,12 @@ def setup(progress=None):
 def test_counts_agree_with_what_planning_says() -> None:
     evaluator, demonstrations = setup()
     evaluation, verdict = evaluator.evaluate(0, demonstrations, 1)
-    expected = evaluation.x_y_yaw[:, 0, 0] >= 1.0
+    expected = evaluation.coordinates[:, 0, 0] >= 1.0
     assert np.array_equal(evaluation.failed, expected)
     assert expected.any()
     assert np.array_equal(np.bincount(evaluation.region), verdict.samples)
     assert np.array_equal(np.bincount(evaluation.region[expected], minlength=2), verdict.failures)
-    assert np.array_equal(evaluator.regions.index(evaluation.x_y_yaw), evaluation.region)
+    assert np.array_equal(evaluator.regions.index(evaluation.coordinates), evaluation.region)
 
 
 def test_batches_do_not_matter(monkeypatch) -> None:
@@ -51,7 +51,7 @@ def test_batches_do_not_matter(monkeypatch) -> None:
     whole, _ = evaluator.evaluate(1, demonstrations, 1)
     monkeypatch.setattr(module, "BATCH", 37)
     parts, _ = evaluator.evaluate(1, demonstrations, 1)
-    assert np.array_equal(whole.x_y_yaw, parts.x_y_yaw)
+    assert np.array_equal(whole.coordinates, parts.coordinates)
     assert np.array_equal(whole.outcomes.cause, parts.outcomes.cause)
 
 

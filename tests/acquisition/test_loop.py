@@ -49,7 +49,7 @@ def test_suggestions_fail_lie_in_the_weakest_region_and_failed_earliest(disks) -
     for event in run(disks, Obliging()):
         if not isinstance(event, RoundFinished) or event.suggestion is None:
             continue
-        place = event.suggestion.x_y_yaw
+        place = event.suggestion.coordinates
         assert event.suggestion.region == event.verdict.region
         assert disks.regions.index(place) == event.verdict.region
         assert not disks.solves(place[None], event.demonstrations).any()
@@ -68,7 +68,7 @@ def test_with_another_rule_a_run_ends_covered_and_asks_where_it_fails(rule) -> N
         asked = [e for e in events if isinstance(e, RoundFinished) and e.suggestion is not None]
         away += [e.suggestion.region != e.verdict.region for e in asked]
         for event in asked:
-            place = event.suggestion.x_y_yaw
+            place = event.suggestion.coordinates
             assert disks.regions.index(place) == event.suggestion.region
             assert not disks.solves(place[None], event.demonstrations).any()
             assert not disks.solves(event.suggestion.failing, event.demonstrations).any()
@@ -86,12 +86,12 @@ def test_a_rule_that_finds_nothing_to_ask_for_ends_the_run(disks) -> None:
 def test_the_first_demonstration_is_asked_for_in_the_middle_if_wanted(disks) -> None:
     teacher = Obliging()
     run(disks, teacher, initial=3, first=np.array([[0.5, 0.5, np.nan]]))
-    places = [place.x_y_yaw.tolist() for place in teacher.asked]
+    places = [place.coordinates.tolist() for place in teacher.asked]
     assert places[0] == [[0.5, 0.5, 0.0]]
     at_random = Obliging()
     run(disks, at_random, initial=3)
-    assert at_random.asked[0].x_y_yaw.tolist() != places[0]
-    assert [place.x_y_yaw.tolist() for place in at_random.asked[1:3]] == places[1:3]
+    assert at_random.asked[0].coordinates.tolist() != places[0]
+    assert [place.coordinates.tolist() for place in at_random.asked[1:3]] == places[1:3]
 
 
 class ShortArm(Obliging):
@@ -107,8 +107,8 @@ def test_where_the_first_place_is_out_of_reach_a_random_one_is_asked_for(disks) 
     events = run(disks, teacher, first=np.array([[1.0, 1.0, np.nan]]))
     run(disks, at_random)
     assert events[-1].status is Status.CERTIFIED
-    assert teacher.asked[0].x_y_yaw.tolist() == [[1.0, 1.0, 0.0]]
-    assert teacher.asked[1].x_y_yaw.tolist() == at_random.asked[0].x_y_yaw.tolist()
+    assert teacher.asked[0].coordinates.tolist() == [[1.0, 1.0, 0.0]]
+    assert teacher.asked[1].coordinates.tolist() == at_random.asked[0].coordinates.tolist()
     kinds = [type(event) for event in events[:3]]
     assert kinds == [DemonstrationRequested, DemonstrationRequested, DemonstrationAdded]
     end = run(disks, ShortArm())[-1]
@@ -131,7 +131,7 @@ def test_a_teacher_without_an_answer_ends_the_run() -> None:
     assert end.reason == "no more"
     refused = teacher.asked[2:]
     assert len(refused) == 3, "other failed instances are tried before giving up"
-    assert len({tuple(s.x_y_yaw[0]) for s in refused}) == 3
+    assert len({tuple(s.coordinates[0]) for s in refused}) == 3
 
 
 def test_a_teacher_who_cannot_begin_ends_the_run_before_any_round(disks) -> None:
@@ -158,7 +158,7 @@ def trace(events):
     return [
         (
             r.verdict.failures.tolist(),
-            None if r.suggestion is None else r.suggestion.x_y_yaw.tolist(),
+            None if r.suggestion is None else r.suggestion.coordinates.tolist(),
         )
         for r in events
         if isinstance(r, RoundFinished)
@@ -173,7 +173,9 @@ def test_a_run_is_a_function_of_its_seed(disks) -> None:
 
 
 def test_every_round_has_fresh_instances(disks) -> None:
-    rounds = [e.evaluation.x_y_yaw for e in run(disks, Obliging()) if isinstance(e, RoundFinished)]
+    rounds = [
+        e.evaluation.coordinates for e in run(disks, Obliging()) if isinstance(e, RoundFinished)
+    ]
     assert len(rounds) >= 2
     assert not np.intersect1d(rounds[0].ravel(), rounds[1][..., :2].ravel()).size > 1
 

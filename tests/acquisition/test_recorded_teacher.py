@@ -75,9 +75,9 @@ class Elsewhere:
         X_WO[:, 0, 3] += 0.3
         return X_WO
 
-    def works(self, recordings, x_y_yaw):
+    def works(self, recordings, coordinates):
         named = [recording.name in self.working for recording in recordings]
-        return np.tile(named, (len(x_y_yaw), 1))
+        return np.tile(named, (len(coordinates), 1))
 
 
 def test_of_another_robots_recordings_those_that_work_come_first(teacher) -> None:
@@ -108,9 +108,9 @@ class Strips:
     def seen(self, recording):
         return recording.X_WO
 
-    def works(self, recordings, x_y_yaw):
+    def works(self, recordings, coordinates):
         lower, upper = np.array([self.strips[r.name] for r in recordings]).reshape(-1, 2).T
-        x = x_y_yaw[:, 0, 0, None]
+        x = coordinates[:, 0, 0, None]
         return (lower <= x) & (x < upper)
 
 

@@ -57,8 +57,8 @@ class Edges(Nearby):
         return super().any_success(demonstrations, moved, q_start)
 
 
-def demonstration_at(name: str, *x_y_yaw: tuple[float, float, float]) -> Demonstration:
-    X_WO = pose_from_planar(np.array(x_y_yaw))
+def demonstration_at(name: str, *coordinates: tuple[float, float, float]) -> Demonstration:
+    X_WO = pose_from_planar(np.array(coordinates))
     recording = Recording(name, ("j0",), np.array([0.0, 1.0]), np.zeros((2, 1)), X_WO)
     return learn(recording)
 
@@ -77,11 +77,11 @@ BOTH = (*FIRST, demonstration_at("second", (0.8, 0.5, 0.0)))
 def test_counts_regions_and_instances_agree() -> None:
     evaluation, verdict = evaluator().evaluate(0, FIRST, 1)
     assert not verdict.certified
-    served = (evaluation.x_y_yaw[:, 0, :2] < 0.95).all(axis=1)
+    served = (evaluation.coordinates[:, 0, :2] < 0.95).all(axis=1)
     np.testing.assert_array_equal(evaluation.failed, ~served)
     regions = evaluation.partition(grid_regions(ONE, {}))
     assert regions.K == len(verdict.samples) > 1
-    np.testing.assert_array_equal(regions.index(evaluation.x_y_yaw), evaluation.region)
+    np.testing.assert_array_equal(regions.index(evaluation.coordinates), evaluation.region)
     drawn, failed = evaluation.region, evaluation.region[evaluation.failed]
     np.testing.assert_array_equal(np.bincount(drawn, minlength=regions.K), verdict.samples)
     np.testing.assert_array_equal(np.bincount(failed, minlength=regions.K), verdict.failures)
@@ -98,10 +98,10 @@ def test_batches_do_not_matter_but_rounds_and_seeds_do(monkeypatch) -> None:
     later, _ = evaluator().evaluate(1, FIRST, 1)
     monkeypatch.setattr(module, "BATCH", 7)
     parts, _ = evaluator().evaluate(0, FIRST, 1)
-    np.testing.assert_array_equal(whole.x_y_yaw, parts.x_y_yaw)
+    np.testing.assert_array_equal(whole.coordinates, parts.coordinates)
     np.testing.assert_array_equal(whole.outcomes.cause, parts.outcomes.cause)
     for different in (other, later):
-        assert not np.isin(different.x_y_yaw[:, 0, 0], whole.x_y_yaw[:, 0, 0]).any()
+        assert not np.isin(different.coordinates[:, 0, 0], whole.coordinates[:, 0, 0]).any()
 
 
 def test_progress_counts_the_whole_area() -> None:
@@ -134,7 +134,7 @@ def test_a_remembered_round_leads_on_as_the_round_itself() -> None:
     again = evaluator()
     again.remember(first)
     found, same = again.evaluate(1, BOTH, 2)
-    np.testing.assert_array_equal(found.x_y_yaw, expected.x_y_yaw)
+    np.testing.assert_array_equal(found.coordinates, expected.coordinates)
     np.testing.assert_array_equal(same.samples, verdict.samples)
     assert same.claim == verdict.claim
 
@@ -156,8 +156,8 @@ class ObligingWithAll(Obliging):
 
     def demonstrate(self, suggestion, *, number, used, rng):
         lesson = super().demonstrate(suggestion, number=number, used=used, rng=rng)
-        lesson.recording.X_WO.resize((len(suggestion.x_y_yaw), 4, 4), refcheck=False)
-        lesson.recording.X_WO[:] = pose_from_planar(suggestion.x_y_yaw)
+        lesson.recording.X_WO.resize((len(suggestion.coordinates), 4, 4), refcheck=False)
+        lesson.recording.X_WO[:] = pose_from_planar(suggestion.coordinates)
         return lesson
 
 
@@ -174,7 +174,7 @@ def test_a_run_with_two_objects_certifies_what_is_true(seed) -> None:
     for event, asked in zip(finished, teacher.asked[1:], strict=False):
         assert asked is event.suggestion
         assert asked.regions is event.regions
-        assert event.regions.index(asked.x_y_yaw) == asked.region == event.verdict.region
+        assert event.regions.index(asked.coordinates) == asked.region == event.verdict.region
         split = event.regions.upper - event.regions.lower
         assert (split[:, [0, 1], [2, 1]] == 0.0).all(), "fixed axes are not split"
     rng = np.random.default_rng(seed)
@@ -212,5 +212,5 @@ def test_starting_over_at_the_start_changes_nothing() -> None:
     rounds.start_over()
     found, _ = rounds.evaluate(0, FIRST, 1)
     expected, _ = evaluator().evaluate(0, FIRST, 1)
-    np.testing.assert_array_equal(found.x_y_yaw, expected.x_y_yaw)
+    np.testing.assert_array_equal(found.coordinates, expected.coordinates)
     assert {cell.epoch for cell in found.frontier} == {1}

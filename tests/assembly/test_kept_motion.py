@@ -72,8 +72,10 @@ def test_a_bystander_changes_nothing(tmp_path) -> None:
         assert any("cup" in note for note in found.notes)
         np.testing.assert_array_equal(found.X_OE, named.X_OE)
         area = setup.area
-        x_y_yaw = np.random.default_rng(1).uniform(area.lower, area.upper, (500, *area.lower.shape))
-        plans.append(setup.evaluate([found], x_y_yaw))
+        coordinates = np.random.default_rng(1).uniform(
+            area.lower, area.upper, (500, *area.lower.shape)
+        )
+        plans.append(setup.evaluate([found], coordinates))
     assert 0.2 < plans[0].success.mean() < 0.9
     np.testing.assert_array_equal(plans[0].cause, plans[1].cause)
     np.testing.assert_array_equal(plans[0].segment, plans[1].segment)

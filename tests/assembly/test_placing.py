@@ -95,7 +95,7 @@ def test_what_is_fixed_may_be_left_out(
             FORM,
         ),
         (ONE, {"bowl": ("a", 0.1)}, "'bowl' is ('a', 0.1), expected numbers", "Give bowl=X,Y,"),
-        (ONE, {"bowl": {"x": 0.8}}, "'bowl' is {'x': 0.8}, expected numbers", "with X and Y in m."),
+        (ONE, {"bowl": {"x": 0.8}}, "no y is given for 'bowl', and it varies", "X and Y in m."),
         (ONE, (), "'bowl' is given 0 numbers", "Give bowl=X,Y, with X and Y in m."),
         (ONE, (0.8,), "'bowl' is given 1 number", "Give bowl=X,Y, with X and Y in m."),
         (ONE, (0.8, 0.1, 0.0, 1.0), "'bowl' is given 4 numbers", "Give bowl=X,Y,"),

@@ -109,14 +109,14 @@ def test_a_free_approach_is_tried_where_no_screw_leads_to_the_first_guiding_pose
     screw = Setup(load_scenario("pouring", changes))
     free = Setup(load_scenario("pouring", [*changes, "planner.approach=free"]))
     rng = np.random.default_rng(2)
-    x_y_yaw = rng.uniform(screw.area.lower, screw.area.upper, (60, 1, 3))
-    along, anyhow = (s.evaluate(demonstrations, x_y_yaw).any_success for s in (screw, free))
+    coordinates = rng.uniform(screw.area.lower, screw.area.upper, (60, 1, 3))
+    along, anyhow = (s.evaluate(demonstrations, coordinates).any_success for s in (screw, free))
     gained = 0
-    for place in x_y_yaw[anyhow & ~along]:
+    for place in coordinates[anyhow & ~along]:
         with suppress(ScenarioError):  # it touches something
             assert free.plan(demonstrations, place).plan.approach
             gained += 1
-    for place in x_y_yaw[along][:3]:
+    for place in coordinates[along][:3]:
         assert not free.plan(demonstrations, place).plan.approach
     assert gained > 0
 

@@ -19,7 +19,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.web.teaching_page import TeachingPage
 setup = Setup(load_scenario("pouring"))
-teacher = InteractiveTeacher(TeachingPage(setup))
+teacher = InteractiveTeacher(TeachingPage(setup), setup.area)
 place = Suggestion(6, np.array([[0.85, 0.45, 0.0]]), 2)
 lesson = teacher.demonstrate(place, number=0, used=(), rng=np.random.default_rng(0))
 demonstration = setup.learn(lesson.recording)

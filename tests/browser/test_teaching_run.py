@@ -211,7 +211,7 @@ def drop(run: Path, aside: Path, inbox: Path) -> Path:
     suggestion = open_run(run).reader.event(0).suggestion
     assert suggestion is not None
     teacher = SimulatedTeacher(setup.workcell, setup.area, "pouring")
-    place = Suggestion(suggestion.region, suggestion.x_y_yaw)
+    place = Suggestion(suggestion.region, suggestion.coordinates)
     lesson = teacher.demonstrate(place, number=1, used=(), rng=np.random.default_rng(0))
     assert lesson.recording is not None, lesson.remark
     folder = aside / "from_the_robot"

@@ -76,6 +76,7 @@ def test_what_is_shipped_is_listed(command: Command) -> None:
     code, out, err = command("list", "--json", "-")
     shipped = json.loads(out)
     assert [item["name"] for item in shipped["scenarios"]] == [
+        "fetching",
         "pouring",
         "pouring_iiwa",
         "pouring_panda",

@@ -29,11 +29,11 @@ def measured(path: np.ndarray, guides: np.ndarray, t: np.ndarray | None = None) 
 
 def dip(depth: float = 0.1, turned: float = 1.0) -> np.ndarray:
     """Down beside the bowl, a turn there, up again; with time to spare at the start."""
-    x_y_yaw = np.zeros((400, 3))
-    x_y_yaw[:, 0] = 0.1
-    x_y_yaw[:, 2] = np.clip(np.linspace(-1.0, 2.0, 400), 0.0, 1.0) * turned
+    coordinates = np.zeros((400, 3))
+    coordinates[:, 0] = 0.1
+    coordinates[:, 2] = np.clip(np.linspace(-1.0, 2.0, 400), 0.0, 1.0) * turned
     z = np.interp(np.arange(400), [0, 133, 266, 399], [0.5, depth, depth, 0.5])
-    return pose_from_planar(x_y_yaw, z)
+    return pose_from_planar(coordinates, z)
 
 
 def test_all_samples_as_guiding_poses_are_kept_exactly() -> None:
@@ -78,10 +78,10 @@ def test_order_counts() -> None:
 
 def test_a_deviation_is_measured_at_one_point_of_the_screw() -> None:
     """Turning first and moving afterwards is not turning while moving."""
-    x_y_yaw = np.zeros((200, 3))
-    x_y_yaw[:100, 2], x_y_yaw[100:, 2] = np.linspace(0.0, 0.4, 100), 0.4
-    x_y_yaw[100:, 0] = np.linspace(0.0, 0.2, 100)
-    path = pose_from_planar(x_y_yaw)
+    coordinates = np.zeros((200, 3))
+    coordinates[:100, 2], coordinates[100:, 2] = np.linspace(0.0, 0.4, 100), 0.4
+    coordinates[100:, 0] = np.linspace(0.0, 0.2, 100)
+    path = pose_from_planar(coordinates)
     place, angle = deviations(path, on_screws(path[[0, -1]]), DEFAULT)
     assert max(place.max() / 0.010, angle.max() / 0.1) > 1.5
 

@@ -346,8 +346,8 @@ def recorded_outcomes(shared: Path, task: str) -> tuple[list[str], np.ndarray, n
     file = shared / "reference" / f"outcomes_{task}.csv"
     table = np.genfromtxt(file, delimiter=",", dtype=str)
     x_y = table[1::4, :2].astype(float)
-    x_y_yaw = np.concatenate([x_y, np.zeros((len(x_y), 1))], axis=1)
-    X_WO = pose_from_planar(x_y_yaw, -0.06447185171756116)
+    coordinates = np.concatenate([x_y, np.zeros((len(x_y), 1))], axis=1)
+    X_WO = pose_from_planar(coordinates, -0.06447185171756116)
     return table[0, 2:].tolist(), X_WO[:, None], table[1::4, 2:]
 
 

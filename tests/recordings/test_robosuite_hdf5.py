@@ -34,7 +34,9 @@ def test_episodes_come_in_with_their_objects(setup: Setup, tmp_path: Path) -> No
     assert isinstance(recording, Recording)
     np.testing.assert_allclose(recording.q, q)
     np.testing.assert_allclose(recording.t, np.arange(50) / 20.0)
-    np.testing.assert_allclose(setup.area.x_y_yaw(recording.X_WO)[0], [0.8, 0.5, 0.5], atol=1e-12)
+    np.testing.assert_allclose(
+        setup.area.coordinates(recording.X_WO)[0], [0.8, 0.5, 0.5], atol=1e-12
+    )
     (moved, _) = read_recordings(
         tmp_path / "demo.hdf5", setup, Mapping(objects={"bowl": (0.75, 0.5)})
     )

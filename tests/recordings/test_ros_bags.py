@@ -33,7 +33,7 @@ def test_joint_states_with_an_objects_pose(kind: str, setup: Setup, tmp_path: Pa
         np.testing.assert_allclose(found.recording.t, t - t[0], atol=1e-6)
         assert found.recording.notes == ("left out 50 messages with the names of other joints",)
         assert "seen from 'base'" in dict(found.facts)["object"]
-        place_found = setup.area.x_y_yaw(found.recording.X_WO)[0]
+        place_found = setup.area.coordinates(found.recording.X_WO)[0]
         np.testing.assert_allclose(place_found, [0.8, 0.5, 0.5], atol=1e-12)
 
 

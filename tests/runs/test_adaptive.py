@@ -62,7 +62,7 @@ def test_an_interrupted_run_resumes_to_the_same_result(whole, tmp_path) -> None:
     again = rounds(open_run(tmp_path / "parts").events())
     assert len(again) == len(told)
     for one, other in zip(told, again, strict=True):
-        np.testing.assert_array_equal(one.evaluation.x_y_yaw, other.evaluation.x_y_yaw)
+        np.testing.assert_array_equal(one.evaluation.coordinates, other.evaluation.coordinates)
         np.testing.assert_array_equal(one.regions.lower, other.regions.lower)
         assert one.verdict.claim == other.verdict.claim
     records = [json.loads((p / "run.json").read_text()) for p in (path, tmp_path / "parts")]
@@ -92,7 +92,7 @@ def test_a_scenario_with_two_objects_runs(tmp_path) -> None:
     assert isinstance(events[-1], Finished)
     assert finished
     for event in finished:
-        places = event.evaluation.x_y_yaw
+        places = event.evaluation.coordinates
         assert (np.ptp(places, axis=0) > 0.0).tolist() == [[1, 1, 0], [1, 0, 1]]
         np.testing.assert_array_equal(event.regions.index(places), event.evaluation.region)
     folder = tmp_path / "two" / "round_01"

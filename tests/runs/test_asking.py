@@ -85,14 +85,14 @@ def test_a_run_with_another_rule_is_carried_on_and_told_again(regions, tmp_path:
     assert len(places) > 1
     area = scenario.objects[0]
     middle = [(axis.lower + axis.upper) / 2 for axis in (area.x, area.y, area.yaw)]
-    np.testing.assert_allclose(places[0].x_y_yaw, [middle])
+    np.testing.assert_allclose(places[0].coordinates, [middle])
     for other in (asked(again), asked(told)):
         assert [place.region for place in places] == [place.region for place in other]
         for one, same in zip(places, other, strict=True):
-            np.testing.assert_array_equal(one.x_y_yaw, same.x_y_yaw)
+            np.testing.assert_array_equal(one.coordinates, same.coordinates)
     rounds = [event for event in lived if isinstance(event, RoundFinished)]
     for event, place in zip(rounds, places[1:], strict=False):
-        assert event.regions.index(place.x_y_yaw) == place.region
+        assert event.regions.index(place.coordinates) == place.region
         entry = json.loads((tmp_path / "whole/run.json").read_text())["rounds"][event.round]
         assert entry["weakest_region"] == event.verdict.region
         assert entry["next_demonstration"]["region"] == place.region
@@ -157,9 +157,9 @@ def test_a_rule_of_ones_own_is_named_in_the_scenario_or_passed_in(
     named = load_scenario("pouring", [*GRID, "demonstrations.ask=my_rules:last"])
     events = carry_out(named, tmp_path / "named")
     first = next(event for event in events if isinstance(event, RoundFinished))
-    last = first.evaluation.x_y_yaw[first.evaluation.failed][-1]
+    last = first.evaluation.coordinates[first.evaluation.failed][-1]
     assert first.suggestion is not None
-    np.testing.assert_array_equal(first.suggestion.x_y_yaw, last)
+    np.testing.assert_array_equal(first.suggestion.coordinates, last)
     assert open_run(tmp_path / "named").setup.ask.__name__ == "last"
 
     from my_rules import last as rule

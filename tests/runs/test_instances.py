@@ -52,9 +52,9 @@ def test_what_is_fixed_and_given_otherwise_is_counted(tmp_path) -> None:
     stand = ObjectArea("stand", (0.4, -0.3, 0.5), (0.4, -0.3, 0.5), 0.0)
     area = WorkArea((BOWL, stand))
     file = write(tmp_path, "bowl.x,bowl.y,stand.x,stand.y\n0.6,0.1,0.4,-0.3\n9,0.1,0.5,-0.3\n")
-    x_y_yaw = read_instances(file, area)
-    assert x_y_yaw[1, 1].tolist() == [0.5, -0.3, 0.5]
-    assert unlike_fixed(x_y_yaw, area) == {"stand.x": 1}
+    coordinates = read_instances(file, area)
+    assert coordinates[1, 1].tolist() == [0.5, -0.3, 0.5]
+    assert unlike_fixed(coordinates, area) == {"stand.x": 1}
     turned = read_instances(write(tmp_path, "x,y,yaw\n0.6,0.1,0.25\n0.6,0.1,1\n"), ONE)
     assert unlike_fixed(turned, ONE) == {"yaw": 1}
 
@@ -102,11 +102,11 @@ def test_outcomes_are_written_as_codes() -> None:
         np.ones((2, 2), "f4"),
         np.zeros((2, 2), "i2"),
     )
-    x_y_yaw = np.array([[[0.6, 0.1, 0.25]], [[0.7, 0.2, 0.25]]])
-    text = outcomes_csv(x_y_yaw, outcomes, ["a", "b"], ONE)
+    coordinates = np.array([[[0.6, 0.1, 0.25]], [[0.7, 0.2, 0.25]]])
+    text = outcomes_csv(coordinates, outcomes, ["a", "b"], ONE)
     assert text == "x,y,a,b\n0.6,0.1,0:0,3:5\n0.7,0.2,1:n,2:c\n"
-    x_y_yaw[1, 0, 2] = 0.5
-    assert outcomes_csv(x_y_yaw, outcomes, ["a", "b"], ONE).startswith("x,y,yaw,a,b\n")
+    coordinates[1, 0, 2] = 0.5
+    assert outcomes_csv(coordinates, outcomes, ["a", "b"], ONE).startswith("x,y,yaw,a,b\n")
 
 
 def test_names_with_commas_stay_in_their_column() -> None:

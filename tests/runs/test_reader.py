@@ -55,7 +55,9 @@ def test_a_replay_has_the_events_of_the_run(lived) -> None:
                 assert one.round == other.round
                 assert len(one.demonstrations) == len(other.demonstrations)
             case RoundFinished():
-                np.testing.assert_array_equal(one.evaluation.x_y_yaw, other.evaluation.x_y_yaw)
+                np.testing.assert_array_equal(
+                    one.evaluation.coordinates, other.evaluation.coordinates
+                )
                 np.testing.assert_array_equal(one.evaluation.region, other.evaluation.region)
                 for name, value in vars(one.verdict).items():
                     np.testing.assert_array_equal(getattr(other.verdict, name), value)
@@ -64,7 +66,9 @@ def test_a_replay_has_the_events_of_the_run(lived) -> None:
                 )
             case DemonstrationRequested():
                 assert (one.round, one.number) == (other.round, other.number)
-                np.testing.assert_array_equal(one.suggestion.x_y_yaw, other.suggestion.x_y_yaw)
+                np.testing.assert_array_equal(
+                    one.suggestion.coordinates, other.suggestion.coordinates
+                )
                 assert one.suggestion.segment == other.suggestion.segment
                 assert one.suggestion.region == other.suggestion.region
             case DemonstrationAdded():

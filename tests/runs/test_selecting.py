@@ -414,8 +414,8 @@ def test_a_selection_certifies_falsely_with_probability_delta_at_most() -> None:
     planner = AtTheLimit(len(demonstrations))
     falsely, single, runs = 0, 0, 120
 
-    def evaluate(some: Sequence[Demonstration], x_y_yaw: Array) -> Outcomes:
-        return planner.any_success(some, area.X_WO(x_y_yaw), None)
+    def evaluate(some: Sequence[Demonstration], coordinates: Array) -> Outcomes:
+        return planner.any_success(some, area.X_WO(coordinates), None)
 
     for seed in range(runs):
         setup = SimpleNamespace(

@@ -16,6 +16,7 @@ from drake_screw.demonstrations import FaithfulConfig, SegmentationConfig
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
 from drake_screw.scenario.loader import dump_scenario, load_scenario, load_stored_scenario
+from drake_screw.scenario.object_blocks import ObjectBlock
 from drake_screw.scenario.run_blocks import (
     AdaptiveBlock,
     CoverageBlock,
@@ -28,7 +29,6 @@ from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.segmentation_block import SegmentationBlock
 from drake_screw.scenario.values import Interval
 from drake_screw.scenario.workcell_blocks import (
-    ObjectBlock,
     RecordedOnBlock,
     RobotBlock,
     TableBlock,
@@ -93,7 +93,7 @@ def test_shipped_scenarios_are_found_by_name(name: str) -> None:
     assert scenario.source is not None
     assert scenario.source.is_absolute()
     assert scenario.source.name == f"{name}.yaml"
-    assert scenario.cells == ((4, 4, 1),)
+    assert scenario.cells == ((4, 4, 1, 1, 1, 1),)
     assert scenario == load_scenario(scenario.source)
 
 
@@ -115,7 +115,7 @@ def test_the_papers_reading_is_shipped_and_does_not_move(task: str) -> None:
         min_progress=0.001,
         region_of_interest=1.5,
     )
-    assert (paper.coverage.strategy, paper.cells) == ("naive_pac", ((4, 4, 1),))
+    assert (paper.coverage.strategy, paper.cells) == ("naive_pac", ((4, 4, 1, 1, 1, 1),))
     assert (paper.coverage.beta, paper.coverage.epsilon, paper.coverage.delta) == (0.95, 0.02, 0.05)
     assert not paper.planner.collision
     assert paper.planner.approach == "screw"
@@ -438,7 +438,9 @@ def test_unknown_name_lists_the_shipped_ones() -> None:
     error = error_of("pourng")
     assert error.message == "no scenario 'pourng'"
     assert error.remedy is not None
-    shipped = "pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e, scooping, "
+    shipped = (
+        "fetching, pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e, scooping, "
+    )
     shipped += "scooping_paper"
     assert error.remedy.startswith(f"Did you mean 'pouring'? Shipped scenarios: {shipped}.")
 
@@ -449,7 +451,7 @@ def test_missing_file_suggests_its_neighbour(write: Callable[..., Path]) -> None
     error = error_of(wrong)
     assert error.message == f"no file '{wrong}'"
     assert f"Did you mean '{file}'? " in (error.remedy or "")
-    assert "pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e" in (
+    assert "fetching, pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e" in (
         error.remedy or ""
     )
 
@@ -512,15 +514,15 @@ def test_overrides_replace_values_in_order(write: Callable[..., Path]) -> None:
     assert scenario.coverage == CoverageBlock(
         beta=0.85, epsilon=0.01, options={"batch": 10, "exact": True, "how": "far=near"}
     )
-    assert scenario.objects[0].z == -0.5
-    assert scenario.cells == ((5, 2, 3),)
+    assert scenario.objects[0].z == Interval(-0.5, -0.5)
+    assert scenario.cells == ((5, 2, 3, 1, 1, 1),)
     assert scenario.table is None
     assert scenario.robot.parked == {"c": 0.25}
 
 
 def test_override_reaches_keys_with_dots(write: Callable[..., Path]) -> None:
     file = write(("{x: 4, y: 2}", "{bowl.x: 4}"))
-    assert load_scenario(file, ["regions.grid.bowl.x=7"]).cells == ((7, 1, 1),)
+    assert load_scenario(file, ["regions.grid.bowl.x=7"]).cells == ((7, 1, 1, 1, 1, 1),)
 
 
 def test_override_paths_are_seen_from_the_working_directory(
@@ -549,7 +551,7 @@ def test_override_paths_are_seen_from_the_working_directory(
         ("objects.1.z=0", "no entry 1 in the list objects", "Entries: 0"),
         ("objects.bowl.z=0", "no entry bowl in the list objects", "Entries: 0"),
         ("robot.joints.2=c", "no entry 2 in the list robot.joints", "Entries: 0 to 1"),
-        ("objects.0.z=", "objects.0.z: expected a number, found nothing", None),
+        ("objects.0.z=", "objects.0.z: expected a number or [lower, upper], found nothing", None),
         ("coverage.epsilon=0.2", "coverage.epsilon: the run could never stop", None),
         ("robot={model: a}", "robot.joints: missing", None),
     ],

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from drake_screw.bandits import STRATEGIES
 from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.object_blocks import ObjectBlock
 from drake_screw.scenario.problems import problems_of
 from drake_screw.scenario.run_blocks import (
     CoverageBlock,
@@ -22,7 +23,6 @@ from drake_screw.scenario.run_blocks import (
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.values import Interval
 from drake_screw.scenario.workcell_blocks import (
-    ObjectBlock,
     RecordedOnBlock,
     RobotBlock,
 )
@@ -77,16 +77,16 @@ def test_a_good_scenario_has_no_problems() -> None:
 
 
 def test_cells_are_per_object_and_axis() -> None:
-    assert GOOD.cells == ((4, 1, 1),)
-    assert Scenario(**changed(regions={"grid": {"bowl.x": 3}})).cells == ((3, 1, 1),)
+    assert GOOD.cells == ((4, 1, 1, 1, 1, 1),)
+    assert Scenario(**changed(regions={"grid": {"bowl.x": 3}})).cells == ((3, 1, 1, 1, 1, 1),)
     two = changed(objects=(BOWL, CUP), regions=RegionsBlock(grid={"cup.yaw": 5, "bowl.x": 2}))
     assert find_problems(two) == ()
-    assert Scenario(**two).cells == ((2, 1, 1), (1, 1, 5))
+    assert Scenario(**two).cells == ((2, 1, 1, 1, 1, 1), (1, 1, 5, 1, 1, 1))
 
 
 def test_adaptive_regions_start_as_one() -> None:
     assert find_problems(adaptive()) == ()
-    assert Scenario(**adaptive()).cells == ((1, 1, 1),)
+    assert Scenario(**adaptive()).cells == ((1, 1, 1, 1, 1, 1),)
 
 
 def test_source_does_not_take_part_in_comparison() -> None:
@@ -206,7 +206,7 @@ def test_another_robot_may_have_made_the_recordings() -> None:
             changed(objects=(BOWL, CUP)),
             "regions.grid.x",
             "'x' is an axis of every object",
-            "Axes: bowl.x, bowl.y, bowl.yaw, cup.x",
+            "Axes: bowl.x, bowl.y, bowl.yaw, bowl.z",
         ),
         (with_block("regions", grid=None), "regions", "grid or adaptive, found neither", "{x: 4"),
         (

@@ -13,7 +13,6 @@ from drake_screw.tasks import (
     WorkArea,
     box_regions,
     draw,
-    free_axes,
     from_unit_box,
 )
 
@@ -26,7 +25,7 @@ ONE, TWO = WorkArea((BOWL,)), WorkArea((BOWL, CUP))
 def partitions(draw: st.DrawFn) -> BoxRegions:
     """The unit box over an area, cut in two at random places a few times."""
     area = draw(st.sampled_from([ONE, TWO]))
-    d = int(free_axes(area).sum())
+    d = int(area.free.sum())
     boxes = [(np.zeros(d), np.ones(d))]
     for _ in range(draw(st.integers(0, 8))):
         lower, upper = boxes.pop(draw(st.integers(0, len(boxes) - 1)))
@@ -44,7 +43,7 @@ def three() -> BoxRegions:
 
 
 def test_the_unit_box_spans_the_axes_with_room() -> None:
-    np.testing.assert_array_equal(free_axes(TWO), [[1, 1, 0], [0, 1, 1]])
+    np.testing.assert_array_equal(TWO.free, [[1, 1, 0], [0, 1, 1]])
     places = from_unit_box(TWO, [[0, 0, 0, 0], [1, 1, 1, 1], [0.5, 0, 0.25, 1]])
     np.testing.assert_array_equal(places[0], TWO.lower)
     np.testing.assert_array_equal(places[1], TWO.upper)
@@ -67,9 +66,9 @@ def test_bounds_shares_and_names() -> None:
 def test_borders_belong_to_the_upper_region_and_outside_to_the_nearest() -> None:
     regions = three()
     places = np.array([[0.9, 0.3], [0.9, 0.0], [0.0, 9.0], [9.0, 9.0], [9.0, -9.0], [1.1, 0.8]])
-    x_y_yaw = np.append(places, np.full((6, 1), 7.0), axis=1)[:, None]
-    np.testing.assert_array_equal(regions.index(x_y_yaw), [2, 1, 0, 2, 1, 2])
-    assert regions.index(x_y_yaw[0]).shape == ()
+    coordinates = np.append(places, np.full((6, 1), 7.0), axis=1)[:, None]
+    np.testing.assert_array_equal(regions.index(coordinates), [2, 1, 0, 2, 1, 2])
+    assert regions.index(coordinates[0]).shape == ()
 
 
 @settings(deadline=None, max_examples=50)

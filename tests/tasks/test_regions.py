@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drake_screw.tasks import AXES, GridRegions, ObjectArea, WorkArea, grid_regions
+from drake_screw.tasks import GridRegions, ObjectArea, WorkArea, grid_regions
 
 BOWL = ObjectArea("bowl", (0.7, -0.2, -1.0), (1.1, 0.8, 1.0), 0.0)
 CUP = ObjectArea("cup", (0.4, 0.0, 0.0), (0.6, 0.5, 0.0), 0.0)
@@ -20,7 +20,7 @@ def grids(draw: st.DrawFn) -> GridRegions:
     area = draw(st.sampled_from([ONE, TWO]))
     counts = {}
     for item in area.objects:
-        for axis, low, high in zip(AXES, item.lower, item.upper, strict=True):
+        for axis, low, high in zip(area.axes, item.lower, item.upper, strict=True):
             if high > low and draw(st.booleans()):
                 counts[f"{item.name}.{axis}"] = draw(st.integers(1, 4))
     return grid_regions(area, counts)
@@ -81,8 +81,8 @@ def test_regions_tile_the_area(grid: GridRegions) -> None:
 
 def test_instances_outside_belong_to_the_nearest_region() -> None:
     grid = grid_regions(ONE, {"x": 4, "y": 4})
-    x_y_yaw = np.array([[[0.0, 0.0, 0.0]], [[2.0, 9.0, 0.0]], [[0.85, -3.0, 9.0]]])
-    np.testing.assert_array_equal(grid.index(x_y_yaw), [0, 15, 1])
+    coordinates = np.array([[[0.0, 0.0, 0.0]], [[2.0, 9.0, 0.0]], [[0.85, -3.0, 9.0]]])
+    np.testing.assert_array_equal(grid.index(coordinates), [0, 15, 1])
 
 
 def test_names() -> None:

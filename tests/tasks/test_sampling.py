@@ -29,10 +29,10 @@ ALL = drawn()
 
 def test_instances_lie_in_their_region_and_fixed_coordinates_stay() -> None:
     for region in range(GRID.K):
-        x_y_yaw = drawn(region, count=300)
-        assert x_y_yaw.shape == (300, 2, 3)
-        np.testing.assert_array_equal(GRID.index(x_y_yaw), region)
-        np.testing.assert_array_equal(x_y_yaw[:, 1, [0, 2]], [[0.5, 0.0]] * 300)
+        coordinates = drawn(region, count=300)
+        assert coordinates.shape == (300, 2, 3)
+        np.testing.assert_array_equal(GRID.index(coordinates), region)
+        np.testing.assert_array_equal(coordinates[:, 1, [0, 2]], [[0.5, 0.0]] * 300)
 
 
 @settings(deadline=None, max_examples=50)

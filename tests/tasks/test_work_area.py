@@ -21,9 +21,9 @@ AREAS = [WorkArea((BOWL,)), WorkArea((BOWL, CUP)), WorkArea((CUP, BOWL, ROUND))]
 @given(st.sampled_from(AREAS), st.integers(0, 2**32 - 1))
 def test_coordinates_are_recovered_from_the_poses(area: WorkArea, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    x_y_yaw = rng.uniform(area.lower, area.upper, (5, len(area.objects), 3))
-    np.testing.assert_allclose(area.x_y_yaw(area.X_WO(x_y_yaw)), x_y_yaw, atol=1e-14)
-    assert area.contains(area.x_y_yaw(area.X_WO(x_y_yaw))).all()
+    coordinates = rng.uniform(area.lower, area.upper, (5, len(area.objects), 3))
+    np.testing.assert_allclose(area.coordinates(area.X_WO(coordinates)), coordinates, atol=1e-14)
+    assert area.contains(area.coordinates(area.X_WO(coordinates))).all()
 
 
 def test_pose_of_an_instance() -> None:
@@ -59,8 +59,8 @@ def test_contains_all_objects_and_borders() -> None:
 @pytest.mark.parametrize("shape", [(), (4,), (2, 3), (0,)])
 def test_leading_axes_are_carried(shape: tuple[int, ...]) -> None:
     area = WorkArea((BOWL, CUP))
-    x_y_yaw = np.broadcast_to(area.lower, (*shape, 2, 3))
-    X_WO = area.X_WO(x_y_yaw)
+    coordinates = np.broadcast_to(area.lower, (*shape, 2, 3))
+    X_WO = area.X_WO(coordinates)
     assert X_WO.shape == (*shape, 2, 4, 4)
-    assert area.x_y_yaw(X_WO).shape == (*shape, 2, 3)
-    assert area.contains(x_y_yaw).shape == shape
+    assert area.coordinates(X_WO).shape == (*shape, 2, 3)
+    assert area.contains(coordinates).shape == shape

@@ -47,7 +47,7 @@ def make_round() -> MakeRound:
     ) -> RoundFinished:
         bad = np.array(failures)
         drawn = np.array(samples if samples is not None else [each] * regions.K)
-        x_y_yaw = np.concatenate(
+        coordinates = np.concatenate(
             [
                 draw(regions, j, seed=5, round=number, start=0, count=int(n))
                 for j, n in enumerate(drawn)
@@ -80,7 +80,9 @@ def make_round() -> MakeRound:
         return RoundFinished(
             number,
             tuple(demonstration(regions.area, i) for i in range(demonstrations)),
-            Evaluation(x_y_yaw, region, _outcomes(np.tile(cause[:, None], max(demonstrations, 1)))),
+            Evaluation(
+                coordinates, region, _outcomes(np.tile(cause[:, None], max(demonstrations, 1)))
+            ),
             verdict,
             suggestion,
             regions,

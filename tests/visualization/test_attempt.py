@@ -171,7 +171,7 @@ def test_charts_are_drawings(limited, workcell, make_round, regions) -> None:
     y = [float(p.split(",")[1]) for p in line.get("points").split()]
     assert min(abs(y[-1] - 2.0), abs(y[-1] - 22.0)) < 0.01
     event = make_round(regions, [0, 3, 10, 5, 0, 1])
-    drawn = ElementTree.fromstring(work_area_map(event, regions, here=event.suggestion.x_y_yaw))
+    drawn = ElementTree.fromstring(work_area_map(event, regions, here=event.suggestion.coordinates))
     assert len([e for e in drawn.iter() if e.get("class") == "cell"]) == regions.K
     sketch = arm_sketch(limited, Linkage(workcell), WorkArea((BOWL,)), OBJECTS, TABLE)
     ElementTree.fromstring(f"<div>{sketch}</div>")

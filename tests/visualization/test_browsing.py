@@ -9,6 +9,7 @@ from drake_screw.planning import Outcomes
 from drake_screw.visualization.browsing import SUCCESSES, Catalogue, catalogue
 
 FAILURES = [0, 3, 10, 5, 0, 1]
+PLANE = (0, 0), (0, 1)
 
 
 @pytest.fixture
@@ -21,7 +22,7 @@ def book(make_round, regions) -> Catalogue:
     o = event.evaluation.outcomes
     outcomes = Outcomes(o.cause, segment, o.joint, o.fraction, o.variant)
     event = replace(event, evaluation=replace(event.evaluation, outcomes=outcomes))
-    return catalogue(event, event.evaluation.region, 0)
+    return catalogue(event, event.evaluation.region, PLANE)
 
 
 def test_failing_instances_come_first_the_earliest_before_the_others(book) -> None:
@@ -44,13 +45,13 @@ def test_of_a_region_only_its_own(book) -> None:
 
 def test_many_successes_are_thinned_and_failures_are_not(make_round, regions) -> None:
     event = make_round(regions, [700, 0, 0, 0, 0, 0], each=1000)
-    book = catalogue(event, event.evaluation.region, 0)
+    book = catalogue(event, event.evaluation.region, PLANE)
     assert book.failing == 700
     assert len(book.instance) == 700 + SUCCESSES
 
 
 def test_the_nearest_on_the_map_prefers_those_that_fail(book) -> None:
-    p = book.event.evaluation.x_y_yaw[book.instance, 0, :2]
+    p = book.event.evaluation.coordinates[book.instance, 0, :2]
     for place in (0, book.failing - 1):
         assert book.nearest_to(*p[place]) == place
     distance = np.linalg.norm(p[book.failing :, None] - p[None, : book.failing], axis=-1)
@@ -61,8 +62,8 @@ def test_the_nearest_on_the_map_prefers_those_that_fail(book) -> None:
 
 def test_without_failures_it_begins_anywhere(make_round, regions) -> None:
     event = make_round(regions, [0] * 6)
-    book = catalogue(event, event.evaluation.region, 0)
+    book = catalogue(event, event.evaluation.region, PLANE)
     assert book.suggested() is None
     assert book.first() == 0
     empty = make_round(regions, [0] * 6, samples=[0] * 6)
-    assert catalogue(empty, empty.evaluation.region, 0).first() is None
+    assert catalogue(empty, empty.evaluation.region, PLANE).first() is None

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from drake_screw.planning import Cause
 from drake_screw.tasks import ObjectArea, WorkArea, box_regions, grid_regions
 from drake_screw.visualization import draw_heat_map, heat_map_figure, save_heat_map
+from drake_screw.visualization.cells import cells
 from drake_screw.visualization.palette import UNKNOWN, failure_color
 from tests.visualization.conftest import BOWL
 
@@ -91,7 +92,7 @@ def test_text_that_has_no_room_is_left_out(ax, make_round, regions) -> None:
 def test_text_makes_way_for_marks(ax, make_round, regions) -> None:
     middle = make_round(regions, FAILURES)
     lower, upper = regions.bounds(2)
-    middle.suggestion.x_y_yaw[:] = (lower + upper) / 2.0
+    middle.suggestion.coordinates[:] = (lower + upper) / 2.0
     draw_heat_map(ax, middle, regions)
     y, x = next(t.get_position() for t in ax.texts if t.get_text() == "1.000")
     assert abs(y - 0.3) > 0.05
@@ -145,7 +146,7 @@ def test_instances_are_drawn_by_cause(ax, make_round, regions) -> None:
     for cause in (Cause.SUCCESS, Cause.JOINT_LIMIT, Cause.UNREACHABLE, Cause.COLLISION):
         drawn[cause] = marks(ax, f"instances {cause.name}")
         expected = event.evaluation.outcomes.cause[:, 0] == cause
-        np.testing.assert_allclose(drawn[cause], event.evaluation.x_y_yaw[expected, 0, :2])
+        np.testing.assert_allclose(drawn[cause], event.evaluation.coordinates[expected, 0, :2])
     looks = {
         (line.get_marker(), line.get_markerfacecolor())
         for line in ax.lines
@@ -179,10 +180,53 @@ def test_stacks_and_the_drawn_object_are_stated(make_round) -> None:
         )
     )
     regions = grid_regions(area, {"bowl.x": 2, "bowl.yaw": 2})
-    ax = heat_map_figure(make_round(regions, [1, 2, 8, 0]), regions).axes[0]
-    assert any("worst of 2 regions; places of bowl" in " ".join(t.split()) for t in texts(ax))
-    assert {"0.800", "0.200"} <= set(texts(ax))
-    assert "0.100" not in texts(ax)
+    worst, mean = heat_map_figure(make_round(regions, [1, 2, 8, 0]), regions).axes[:2]
+    titles = [" ".join(ax.get_title(loc="left").split()) for ax in (worst, mean)]
+    assert titles[0] == "bowl: the worst of 2 regions over bowl yaw and cup y"
+    assert titles[1] == "bowl: the mean over bowl yaw and cup y"
+    assert {"0.800", "0.200"} <= set(texts(worst))
+    assert "0.100" not in texts(worst)
+    assert {"0.450", "0.100"} <= set(texts(mean))
+
+
+def test_every_object_that_moves_has_its_maps(make_round) -> None:
+    cup = ObjectArea("cup", (0.4, 0.6, 0.0), (0.5, 0.9, 0.0), 0.0)
+    regions = grid_regions(WorkArea((BOWL, cup)), {"bowl.x": 2, "cup.y": 2})
+    event = make_round(regions, [1, 2, 8, 0])
+    maps = heat_map_figure(event, regions).axes[:4]
+    titles = [ax.get_title(loc="left").split(":")[0] for ax in maps]
+    assert titles == ["bowl", "bowl", "cup", "cup"]
+    np.testing.assert_allclose(marks(maps[2], "suggestion"), [event.suggestion.coordinates[1, :2]])
+
+
+def test_axes_are_chosen_and_named(make_round) -> None:
+    area = WorkArea(
+        (
+            ObjectArea("bowl", (0.6, 0.0, 0.0), (1.0, 0.4, 0.0), z=(0.0, 0.3)),
+            ObjectArea("cup", (0.5, 0.6, 0.0), (0.5, 0.9, 0.0), 0.0),
+        )
+    )
+    regions = grid_regions(area, {"bowl.z": 3, "cup.y": 2})
+    event = make_round(regions, [1, 2, 8, 0, 0, 6])
+    ax = heat_map_figure(event, regions, axes=((0, 3), (1, 1))).axes[0]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("cup y in m", "bowl z in m")
+    assert (*ax.get_xlim(), *ax.get_ylim()) == pytest.approx((0.6, 0.9, 0.0, 0.3))
+    assert {"0.100", "0.200", "0.800", "0.600"} <= set(texts(ax))
+    assert any("averaged over bowl x and bowl y" in " ".join(t.split()) for t in texts(ax))
+    place = event.demonstrations[0].X_WO
+    np.testing.assert_allclose(marks(ax, "demonstration 1"), [[place[0, 2, 3], place[1, 1, 3]]])
+
+
+def test_a_mean_weighs_regions_by_their_share() -> None:
+    area = WorkArea((ObjectArea("bowl", (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), 0.0),))
+    boxes = box_regions(
+        area,
+        [[0, 0, 0], [0, 0, 0.25], [0, 0.5, 0.25]],
+        [[1, 1, 0.25], [1, 0.5, 1], [1, 1, 1]],
+    )
+    drawn = cells(boxes, np.array([0.4, 0.0, 0.8]))
+    np.testing.assert_allclose(drawn.mean, [0.1, 0.7])
+    assert np.isnan(cells(boxes, np.full(3, np.nan)).mean).all()
 
 
 def test_cells_of_different_sizes_are_drawn_as_they_are(ax, make_round, regions) -> None:
@@ -204,7 +248,7 @@ def test_a_weakest_region_larger_than_the_cells_is_framed_whole(ax, make_round) 
         [[1, 1, 1], [0.5, 1, 0.5], [1, 1, 0.5]],
     )
     figure = heat_map_figure(make_round(boxes, [6, 1, 9]), boxes)
-    assert any("worst of up to 2 regions" in " ".join(t.split()) for t in texts(figure.axes[0]))
+    assert "worst of up to 2 regions" in " ".join(figure.axes[0].get_title(loc="left").split())
     draw_heat_map(ax, make_round(boxes, [6, 1, 0]), boxes, dots=0)
     (frame,) = [p for p in ax.patches if p.get_gid() == "weakest"]
     np.testing.assert_allclose((frame.get_width(), frame.get_height()), (1.2, 0.4))

@@ -6,7 +6,8 @@ import pytest
 from drake_screw.bandits import Cell
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.tasks import BoxRegions, ObjectArea, WorkArea, box_regions, grid_regions
-from drake_screw.visualization.rounds import cells, details, headline, sample
+from drake_screw.visualization.cells import cells
+from drake_screw.visualization.rounds import details, headline, sample
 from tests.visualization.conftest import BOWL
 
 
@@ -39,9 +40,9 @@ def test_without_demonstrations_nothing_was_tried() -> None:
 def test_samples_are_capped_stated_and_repeatable(make_round, regions) -> None:
     evaluation = make_round(regions, [5, 0, 0, 0, 0, 0], each=1000).evaluation
     first, second = sample(evaluation, 100), sample(evaluation, 100)
-    assert len(first.x_y_yaw) == len(first.cause) == 100
+    assert len(first.coordinates) == len(first.cause) == 100
     assert first.statement == "100 of 6,000 instances, drawn at random"
-    np.testing.assert_array_equal(first.x_y_yaw, second.x_y_yaw)
+    np.testing.assert_array_equal(first.coordinates, second.coordinates)
     assert sample(evaluation, 6000).statement == "all 6,000 instances"
 
 

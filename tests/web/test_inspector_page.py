@@ -43,7 +43,9 @@ def copy(finished_run, tmp_path) -> Path:
 def test_it_begins_at_the_suggested_instance(reader) -> None:
     selection = select(reader, 1)
     event = reader.event(1)
-    assert np.array_equal(event.evaluation.x_y_yaw[selection.instance], event.suggestion.x_y_yaw)
+    assert np.array_equal(
+        event.evaluation.coordinates[selection.instance], event.suggestion.coordinates
+    )
     assert event.evaluation.failed[selection.instance]
 
 
@@ -83,9 +85,9 @@ def test_steps_go_through_the_failing_instances_of_a_region(reader) -> None:
 def test_a_point_on_the_map_leads_to_the_nearest_failing_instance(reader) -> None:
     selection = select(reader, 0)
     event = reader.event(0)
-    wanted = event.evaluation.x_y_yaw[np.flatnonzero(event.evaluation.failed)[100], 0]
+    wanted = event.evaluation.coordinates[np.flatnonzero(event.evaluation.failed)[100], 0]
     moved = after_message(reader, selection, {"at": [float(wanted[0]), float(wanted[1])]})
-    assert np.allclose(event.evaluation.x_y_yaw[moved.instance, 0, :2], wanted[:2])
+    assert np.allclose(event.evaluation.coordinates[moved.instance, 0, :2], wanted[:2])
 
 
 @pytest.mark.parametrize(
@@ -112,7 +114,7 @@ def test_a_round_without_failures_offers_no_earliest(reader, monkeypatch) -> Non
     fine = np.flatnonzero(~event.evaluation.failed)
     part = replace(
         event.evaluation,
-        x_y_yaw=event.evaluation.x_y_yaw[fine],
+        coordinates=event.evaluation.coordinates[fine],
         region=event.evaluation.region[fine],
         outcomes=event.evaluation.outcomes[fine],
     )
@@ -332,7 +334,7 @@ def test_half_a_million_instances_are_thinned_and_open_quickly(reader, monkeypat
     repeat = np.resize(np.arange(len(evaluation.region)), 516_928)
     large = replace(
         evaluation,
-        x_y_yaw=evaluation.x_y_yaw[repeat],
+        coordinates=evaluation.coordinates[repeat],
         region=evaluation.region[repeat],
         outcomes=evaluation.outcomes[repeat],
     )

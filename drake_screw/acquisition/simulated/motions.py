@@ -1,9 +1,10 @@
-"""What people do with an arm at a bowl: pouring and scooping, as key poses of its end effector.
+"""What people do with an arm at a bowl, or a cup and a bowl, as key poses of its end effector.
 
 The numbers follow 32 kinesthetic demonstrations on a Baxter, 16 of each motion, spread evenly over
 a work area of 0.37 m by 1.02 m: where the end effector is, how it is turned and how much that
 varies at the guiding poses found in them, rounded; and estimates for what guiding poses do not show
-(the arc of the roll, how long people stop).
+(the arc of the roll, how long people stop). Of `fetching` and pouring there are no recordings: what
+it does at the cup is estimated, what it does at the bowl is as in pouring.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class Variation:
 
 @dataclass(frozen=True)
 class HandPath:
-    """Key poses of the end effector, each relative to the object and the direction of approach.
+    """Key poses of the end effector, each relative to an object and the direction of approach.
 
     Arrays are (c, g), for c candidates and g key poses, or broadcast to it.
 
@@ -47,6 +48,7 @@ class HandPath:
         roll: rad, about the end effector's z axis, from how it is held at the start.
         pause: (g,) s, the shortest and the longest time that people stop at each key pose.
         held: (c,) m, by how much the tool is held longer than usual.
+        at: (g,) which object each key pose belongs to; all to the first where left out.
     """
 
     behind: Array
@@ -56,6 +58,12 @@ class HandPath:
     roll: Array
     pause: tuple[tuple[float, float], ...]
     held: Array
+    at: tuple[int, ...] = ()
+
+    @property
+    def objects(self) -> tuple[int, ...]:
+        """Those that key poses belong to, by number."""
+        return tuple(sorted(set(self.at))) or (0,)
 
 
 def pouring(rng: np.random.Generator, held: Array) -> HandPath:
@@ -121,12 +129,45 @@ def scooping(rng: np.random.Generator, held: Array) -> HandPath:
     )
 
 
+CUP = 0.085
+"""m, from the end effector forward to the axis of a cup between its fingers, and how high above the
+cup's bottom that is held: what a scenario has to say of `robot.tool`."""
+GRIP = 0.075
+
+
+def fetching(rng: np.random.Generator, held: Array) -> HandPath:
+    """Key poses of fetching the first object, a cup, and pouring from it into the second, a bowl.
+
+    Come in level from behind, close in on the cup, lift it straight up; then as in pouring. The cup
+    is where the fingers are, so it is never held longer than usual.
+    """
+    draw = _drawer(rng, len(held))
+    poured = pouring(rng, np.zeros_like(held))
+    behind, high = draw(CUP, 0.001, CUP - 0.002, CUP + 0.002), draw(GRIP, 0.001, 0.072, 0.078)
+    away, lift, none = draw(0.09, 0.015, 0.06, 0.13), draw(0.06, 0.006, 0.045, 0.075), 0.0 * held
+
+    def joined(cup: tuple[Array, ...], bowl: Array) -> Array:
+        return np.concatenate([_rows(*cup), np.broadcast_to(bowl, (len(held), 5))], axis=-1)
+
+    return HandPath(
+        behind=joined((behind + away, behind, behind), poured.behind),
+        left=joined((none, none, none), poured.left),
+        height=joined((high, high, high + lift), poured.height),
+        pitch=joined((none, none, none), poured.pitch),
+        roll=joined((none, none, none), poured.roll),
+        pause=((0.1, 0.6), (0.8, 1.6), (0.1, 0.5), *poured.pause),
+        held=none,
+        at=(0, 0, 0, 1, 1, 1, 1, 1),
+    )
+
+
 Motion = Callable[[np.random.Generator, Array], HandPath]
 """(rng, held (c,) m) to c candidates of a motion, as `pouring` has them."""
 
 MOTIONS: Mapping[str, Motion] = {
     "pouring": pouring,
     "scooping": scooping,
+    "fetching": fetching,
 }
 
 
@@ -176,19 +217,24 @@ def hand_poses(path: HandPath, azimuth: Array, X_WE: Array, p_WO: Array) -> Arra
 
     Args:
         path: c candidates of g key poses.
-        azimuth: (c,) rad, direction of approach.
+        azimuth: (c,) rad, direction of approach, or (c, k) of that to each object.
         X_WE: (4, 4) the end effector at rest, from which rolls are counted.
-        p_WO: (3,) m, the object.
+        p_WO: (3,) m, the object, or (k, 3) of each.
 
     Returns:
         X_WE: (c, g, 4, 4).
     """
+    azimuth, p_WO = np.asarray(azimuth), np.asarray(p_WO)
+    if azimuth.ndim == 1:
+        azimuth, p_WO = azimuth[:, None], p_WO[None]
+    at = list(path.at) or [0] * path.behind.shape[-1]
+    azimuth, p_WO = azimuth[:, at], p_WO[at]
     c, s, zero = np.cos(azimuth), np.sin(azimuth), np.zeros_like(azimuth)
-    forward = np.stack([c, s, zero], axis=-1)[:, None]
-    leftward = np.stack([-s, c, zero], axis=-1)[:, None]
+    forward = np.stack([c, s, zero], axis=-1)
+    leftward = np.stack([-s, c, zero], axis=-1)
     up = np.array([0.0, 0.0, 1.0])
     p = p_WO + path.left[..., None] * leftward - path.behind[..., None] * forward
-    R = _frame(azimuth[:, None], path.pitch, path.roll + _roll(X_WE[:3, :3]))
+    R = _frame(azimuth, path.pitch, path.roll + _roll(X_WE[:3, :3]))
     return pose(R, p + path.height[..., None] * up)
 
 

@@ -24,7 +24,7 @@ from drake_screw.acquisition.simulated.stops import COMFORTABLE, MARGIN, ROUNDIN
 from drake_screw.acquisition.teacher import Lesson
 from drake_screw.demonstrations import Recording
 from drake_screw.demonstrations.recording import checked
-from drake_screw.errors import ScenarioError, unknown
+from drake_screw.errors import ScenarioError, counted, unknown
 from drake_screw.robot import Workcell
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
@@ -55,18 +55,19 @@ class SimulatedTeacher:
     side, the tool held as usual. Where none works it thinks again, with the tool held longer. It
     does not ask the planner, nor knows what other places the demonstration will serve.
 
-    The motion is that of the end effector relative to the first object, and takes its z axis to
-    point out of the tool. The table must be level.
+    The motion is that of the end effector relative to the first object, or to those that it names
+    (`HandPath.at`), wherever they are; how they are turned makes no difference. It takes the end
+    effector's z axis to point out of the tool. The table must be level.
 
     Args:
         workcell: the arm and what it may collide with.
         area: turns requests into object poses.
-        motion: "pouring" or "scooping", or a function like those of that name in `motions`.
+        motion: one of `MOTIONS`, or a function like those.
         free_axis: (3,) in the end effector's frame, about which it rolls as the joints have it;
             None where it is led as a whole.
 
     Raises:
-        ScenarioError: no such motion.
+        ScenarioError: no such motion, or it works on more objects than there are.
     """
 
     def __init__(
@@ -83,6 +84,14 @@ class SimulatedTeacher:
         self.area = area
         self.motion = motion if isinstance(motion, str) else getattr(motion, "__name__", "motion")
         self._motion = MOTIONS[motion] if isinstance(motion, str) else motion
+        least = 1 + max(self._motion(np.random.default_rng(0), np.zeros(1)).objects)
+        if least > len(area.objects):
+            raise ScenarioError(
+                f"teacher.motion: '{self.motion}' works on {counted(least, 'object')}, and there "
+                f"{'is' if len(area.objects) == 1 else 'are'} {len(area.objects)}",
+                remedy="Add objects in the order in which the motion comes to them, or choose "
+                "another motion.",
+            )
         self._chain = workcell.arm.screw_chain()
         self._free_axis = None if free_axis is None else np.asarray(free_axis, dtype=float)
         self._stops = Stops.of(workcell.arm, workcell.start)
@@ -99,8 +108,9 @@ class SimulatedTeacher:
 
         Where none of the ways that were thought of works, the remark says what was in the way.
         """
-        X_WO = self.area.X_WO(suggestion.x_y_yaw)
-        x, y = suggestion.x_y_yaw[0, :2]
+        X_WO = self.area.X_WO(suggestion.coordinates)
+        x, y = X_WO[0, :2, 3]
+        where = f"x={x:.2f}, y={y:.2f}"
         unreached = limited = 0
         touched: Counter[tuple[str, str]] = Counter()
         for attempt in range(ATTEMPTS):
@@ -118,11 +128,12 @@ class SimulatedTeacher:
                 elif hit := self._touching(q, X_WO):
                     touched[hit] += 1
                 else:
-                    remark = f"simulated {self.motion} at x={x:.2f}, y={y:.2f}"
-                    return Lesson(self._recording(q, X_WO, number), remark)
+                    remark = f"simulated {self.motion} at {where}"
+                    task = rehearsal.keys.objects
+                    return Lesson(self._recording(q, X_WO, number, task), remark)
         return Lesson(
             None,
-            f"no feasible demonstration at x={x:.2f}, y={y:.2f}: of {ATTEMPTS * CANDIDATES} ways "
+            f"no feasible demonstration at {where}: of {ATTEMPTS * CANDIDATES} ways "
             f"of {self.motion}, {unreached} are out of reach, {limited} meet a joint limit and "
             f"{touched.total()} collide{_most_often(touched)}",
         )
@@ -136,10 +147,13 @@ class SimulatedTeacher:
         return pairs[0] if pairs else ("the robot", "something")
 
     def _rehearse(self, X_WO: Array, rng: np.random.Generator, *, stretched: bool) -> _Rehearsal:
-        rest, p_WO = self._chain.pose(self.workcell.start), X_WO[0, :3, 3]
+        rest, p_WO = self._chain.pose(self.workcell.start), X_WO[:, :3, 3]
         keys = self._motion(rng, tool_lengths(rng, CANDIDATES, stretched=stretched))
-        aside = azimuth_deviations(rng, CANDIDATES)
-        X_WK = hand_poses(keys, usual_azimuth(rest, p_WO) + aside, rest, p_WO)
+        aside, azimuth = np.zeros((2, CANDIDATES, len(p_WO)))
+        for i in keys.objects:
+            aside[:, i] = azimuth_deviations(rng, CANDIDATES)
+            azimuth[:, i] = usual_azimuth(rest, p_WO[i]) + aside[:, i]
+        X_WK = hand_poses(keys, azimuth, rest, p_WO)
         ends, axis = self._stops.ends, self._free_axis
         paths = follow_key_poses(self._chain, self.workcell.start, X_WK, ends, axis)
         margin = self._stops.margin(paths.q).min(axis=1)
@@ -148,7 +162,7 @@ class SimulatedTeacher:
         comfort = (
             np.minimum(margin, COMFORTABLE)
             - keys.held
-            - AZIMUTH_WEIGHT * aside**2
+            - AZIMUTH_WEIGHT * (aside**2).sum(axis=1)
             - TRAVEL_WEIGHT * travel
         )
         comfort += rng.normal(0.0, 0.02, CANDIDATES)
@@ -166,15 +180,15 @@ class SimulatedTeacher:
         )
         return with_hand_noise(self._chain, moving, rng)
 
-    def _recording(self, q: Array, X_WO: Array, number: int) -> Recording:
-        arm = self.workcell.arm
+    def _recording(self, q: Array, X_WO: Array, number: int, task: tuple[int, ...]) -> Recording:
+        arm, objects = self.workcell.arm, self.area.objects
         recording = Recording(
             f"demo_{number + 1:02d}",
             arm.joint_names,
             np.arange(len(q)) / RATE,
             q,
             X_WO,
-            task_objects=(self.area.objects[0].name,) if len(self.area.objects) > 1 else (),
+            task_objects=tuple(objects[i].name for i in task) if len(objects) > 1 else (),
         )
         return replace(checked(recording, arm.lower, arm.upper, units=arm.units), notes=())
 
