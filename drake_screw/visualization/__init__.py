@@ -6,8 +6,8 @@ from drake_screw.lazily import lazily
 
 if TYPE_CHECKING:
     from drake_screw.visualization.heat_map import draw_heat_map
-    from drake_screw.visualization.heat_map_figure import heat_map_figure, save_heat_map
     from drake_screw.visualization.progress import draw_progress, run_figure, save_run_figure
+    from drake_screw.visualization.round_figure import heat_map_figure, save_heat_map
     from drake_screw.visualization.rounds import Round
     from drake_screw.visualization.scene import Scene
 
@@ -24,7 +24,7 @@ __all__ = [
 
 _MODULES = {
     "heat_map": ("draw_heat_map",),
-    "heat_map_figure": ("heat_map_figure", "save_heat_map"),
+    "round_figure": ("heat_map_figure", "save_heat_map"),
     "progress": ("draw_progress", "run_figure", "save_run_figure"),
     "rounds": ("Round",),
     "scene": ("Scene",),
