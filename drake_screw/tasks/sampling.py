@@ -24,9 +24,9 @@ MORE, AGAIN = 1, 2
 """Of the keys of streams: the axes beyond x, y, yaw; what takes the place of overlapping objects.
 """
 
-MOST = 2000
-"""Places of an instance that are tried before a region counts as one in which nothing is left: of
-an instance where a hundredth is left that is less likely than 2e-9."""
+MOST = 100_000
+"""Places of an instance that are tried before nothing counts as left in a region: where a part in
+2,000 is left that is less likely than 1e-21."""
 
 
 def uniform(
@@ -58,7 +58,16 @@ def uniform(
     return np.concatenate(chunks)[offset : offset + count]
 
 
-def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, count: int) -> Array:
+def draw(
+    regions: Regions,
+    region: int,
+    *,
+    seed: int,
+    round: int,
+    start: int,
+    count: int,
+    most: int = MOST,
+) -> Array:
     """Instances drawn uniformly and independently in one region.
 
     Their x, y, yaw are the stream of `uniform` with key (round, region), further axes that with key
@@ -70,6 +79,7 @@ def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, co
         seed: of the run.
         round: of the run, from 0. Another round has other instances.
         start, count: which instances of the round's stream.
+        most: places of an instance that are tried where objects must not overlap.
 
     Returns:
         coordinates: (count, k, c) m and rad.
@@ -102,13 +112,13 @@ def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, co
 
     found = candidates()
     bad = np.flatnonzero(area.overlaps(found))
-    for attempt in range(MOST):
+    for attempt in range(most):
         if len(bad) == 0:
             return found
         found[bad] = candidates(AGAIN, attempt)[bad]
         bad = bad[area.overlaps(found[bad])]
     raise ScenarioError(
-        f"region {region} ({regions.name(region)}): objects overlap at each of {MOST:,} places "
+        f"region {region} ({regions.name(region)}): objects overlap at each of {most:,} places "
         "drawn in it, so that next to nothing of it is left",
         remedy="Give the objects more room, cut them fewer cells, or leave `apart` out.",
     )

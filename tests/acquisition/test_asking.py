@@ -192,6 +192,18 @@ def test_distances_are_parts_of_the_extent_and_a_whole_turn_closes() -> None:
     assert apart(half, ends[:1], ends[1:])[0, 0] == 1.0
 
 
+def test_distances_along_the_pitch_of_any_orientation_are_those_of_its_sine() -> None:
+    ball = ObjectArea("ball", (0.5, 0.0, 0.0), (0.5, 0.0, 0.0), 0.0, any_orientation=True)
+    area = WorkArea((ball,))
+    level, up = np.zeros((2, 1, 6))
+    level[0, 0] = up[0, 0] = 0.5
+    up[0, 5], level[0, 4] = math.pi / 6, 0.1
+    assert apart(area, level[None], up[None])[0, 0] == pytest.approx(0.25)
+    level[0, 4], up[0, 4], up[0, 5] = -3.0, 3.0, 0.0
+    turn = (2 * math.pi - 6.0) / (2 * math.pi)
+    assert apart(area, level[None], up[None])[0, 0] == pytest.approx(turn)
+
+
 def test_the_neighbourhood_reaches_as_far_as_it_says() -> None:
     """The best place of a row of failures has all of them for neighbours, or as many as can be."""
     x = np.linspace(0.1, 1.9, 19)

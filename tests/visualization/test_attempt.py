@@ -268,3 +268,16 @@ def test_bodies_that_touch_are_drawn_where_they_do(easy, workcell, meshcat) -> N
     for seen in (None, drawn):
         words = attempt_entry(0, "made", outcome, seen, workcell)["words"]
         assert words == f"collision in segment 2, 50% along it: {robot}, bowl"
+
+
+def test_a_tilted_object_is_sketched_as_the_cylinder_it_is(limited, workcell) -> None:
+    lying = limited.X_WO.copy()
+    lying[0, :3, :3] = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
+    tilted = replace(limited, X_WO=lying)
+    sketch = arm_sketch(tilted, Linkage(workcell), WorkArea((BOWL,)), OBJECTS, TABLE)
+    above, _ = ElementTree.fromstring(f"<div>{sketch}</div>")
+    (outline,) = [e.get("points") for e in above.iter("polygon")]
+    points = np.array([p.split(",") for p in outline.split()], dtype=float)
+    extent = np.ptp(points, axis=0)
+    bowl = OBJECTS[0]
+    np.testing.assert_allclose(extent, [2e3 * bowl.radius, 1e3 * bowl.height], atol=2.0)

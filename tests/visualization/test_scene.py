@@ -3,6 +3,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from pydrake.geometry import Meshcat
 
@@ -129,6 +130,20 @@ def test_every_object_is_suggested(meshcat, make_round) -> None:
     for name in ("cup", "bowl"):
         assert meshcat.HasPath(f"/rounds/01/next/{name}/object")
         assert meshcat.HasPath(f"/objects/{name}")
+
+
+def test_what_stands_on_a_tray_is_shown_where_the_tray_is(meshcat, make_round) -> None:
+    tray = ObjectArea("tray", (0.8, 0.2, 0.5), (0.8, 0.2, 0.5), 0.1)
+    cup = ObjectArea("cup", (-0.1, -0.05, 0.0), (0.1, 0.05, 0.0), z=(0.01, 0.2), on="tray")
+    area = WorkArea((cup, tray))
+    objects = (ObjectConfig("cup", 0.03, 0.1), ObjectConfig("tray", 0.15, 0.01))
+    scene = Scene(meshcat, BAXTER, TABLE, objects, area)
+    regions = grid_regions(area, {"cup.x": 2})
+    shown = scene.show_round(make_round(regions, [3, 0]), regions)
+    assert shown.coordinates.shape == (20, 2, 6)
+    assert meshcat.HasPath("/instances/success")
+    np.testing.assert_allclose(scene._X_WP(0)[:3, 3], [0.8, 0.2, 0.0])
+    assert scene._height(0) == pytest.approx(0.112)
 
 
 def test_the_page_needs_no_network(tmp_path, scene, make_round, regions) -> None:
