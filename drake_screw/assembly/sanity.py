@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,10 +11,6 @@ from drake_screw.robot import Arm, ScrewChain, Workcell
 from drake_screw.robot.hand import angle_between, out_of_the_hand
 from drake_screw.robot.ignored import Pair, remedy_for
 from drake_screw.scenario.schema import Scenario
-from drake_screw.tasks import WorkArea
-
-TOOL = 0.5
-"""m. The end effector is never farther than this from the object that it works on."""
 
 LISTED = 6
 """Of shapes that are missing; a robot can have many."""
@@ -22,32 +18,17 @@ ON_THE_LIMIT = 1e-6
 """rad or m. So near to a limit is on it."""
 NUDGE = {"rad": 0.05, "m": 0.005}
 """How far inside of a limit it is recommended to start."""
-PLACES = 25
-"""Along each axis of the work area, that are looked at for obstacles."""
 ASIDE = np.deg2rad(45.0)
 """From which on an end effector's z axis clearly does not point out of the hand."""
-STANDS_IN = 1e-3
-"""m, that an object must be in an obstacle; one that stands on it is not."""
 
 
-@dataclass(frozen=True)
-class Covered:
-    """How much of an object's work area an obstacle takes up: there the two would overlap."""
-
-    obstacle: str
-    object: str
-    share: float
-
-    def __str__(self) -> str:
-        share = "all" if self.share >= 1.0 else f"about {max(self.share, 0.01):.0%}"
-        return (
-            f"obstacle '{self.obstacle}' is in the place of '{self.object}' in {share} of its work "
-            "area: the two would overlap there"
-        )
-
-
-def check_start(scenario: Scenario, workcell: Workcell) -> None:
+def check_start(scenario: Scenario, workcell: Workcell, place: str = "robot") -> None:
     """Check that the start configuration is strictly inside the joint limits.
+
+    Args:
+        scenario: says what it is.
+        workcell: has it.
+        place: of the arm's keys in the scenario.
 
     Raises:
         ScenarioError: it is not.
@@ -62,11 +43,11 @@ def check_start(scenario: Scenario, workcell: Workcell) -> None:
         within = f", a {key} of {kept:g} {unit} kept" if kept > 0.0 else ""
         inside = np.clip(start[i], *_a_little_inside(chain.lower[i], chain.upper[i], unit))
         raise ScenarioError(
-            f"robot.start: {name} starts at {start[i]:.4f} {unit}, {'on' if on else 'outside'} "
+            f"{place}.start: {name} starts at {start[i]:.4f} {unit}, {'on' if on else 'outside'} "
             f"its limits {chain.lower[i]:.4f} .. {chain.upper[i]:.4f} {unit}{within}",
             remedy=f"A plan needs room on both sides: start it a little inside, at {inside:.4g} "
-            f"{unit} say. If {name} is to stay where it is, leave it out of robot.joints and put "
-            "it in robot.parked; there it may be on its limit.",
+            f"{unit} say. If {name} is to stay where it is, leave it out of {place}.joints and "
+            "put it in robot.parked; there it may be on its limit.",
             file=scenario.source,
         )
 
@@ -153,11 +134,16 @@ def not_shown(workcell: Workcell) -> str | None:
     )
 
 
-def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
+def check_start_is_free(scenario: Scenario, workcell: Workcell, place: str = "robot") -> None:
     """Check that no obstacle touches the robot at the start, nor anything what the robot holds.
 
     Where collisions are looked at, by planning or by the simulated teacher, neither may the robot
     touch itself or the table there, since nothing could succeed, and a clearance has to be kept.
+
+    Args:
+        scenario: says what is looked at.
+        workcell: with all arms at their starts.
+        place: of the keys of the workcell's arm in the scenario.
 
     Raises:
         ScenarioError: something does.
@@ -166,6 +152,7 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     if not (workcell.obstacles or workcell.tool or scenario.planner.collision or taught):
         return
     pairs = touching_at_start(workcell)
+    start = "robot.start" if scenario.robot.arms is None else "the starts of robot.arms"
 
     def touching(name: str) -> list[str]:
         return [other for pair in pairs if name in pair for other in pair if other != name]
@@ -173,9 +160,9 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     held = [] if workcell.tool is None else touching(workcell.name(workcell.tool.index()))
     if held:
         raise ScenarioError(
-            f"robot.tool.shape: the tool touches {_listed(held)} at the start",
+            f"{place}.tool.shape: the tool touches {_listed(held)} at the start",
             remedy=f"If it may, as the fingers around it, write touches: [{', '.join(held)}] in "
-            "robot.tool; otherwise make the shape smaller, move it, or change robot.start.",
+            f"{place}.tool; otherwise make the shape smaller, move it, or change {place}.start.",
             file=scenario.source,
         )
     for i, body in enumerate(workcell.obstacles):
@@ -184,15 +171,15 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
             raise ScenarioError(
                 f"obstacles.{i}: '{body.name()}' touches the robot's {_listed(links)} at the start",
                 remedy="Move the obstacle (xyz is in metres, seen from "
-                f"'{scenario.robot.base}'), or change robot.start.",
+                f"'{scenario.robot.base}'), or change {start}.",
                 file=scenario.source,
             )
     if pairs and (scenario.planner.collision or taught):
         follows = "plan" if scenario.planner.collision else "demonstration of a simulated teacher"
         both = " and ".join(f"'{a}' touches '{b}'" for a, b in pairs)
         raise ScenarioError(
-            f"robot.start: {both} at the start, so that no {follows} can succeed",
-            remedy="Change robot.start, or robot.parked (fingers may be put apart), or mend the "
+            f"{start}: {both} at the start, so that no {follows} can succeed",
+            remedy=f"Change {start}, or robot.parked (fingers may be put apart), or mend the "
             "collision shapes of the robot's model. Where they may touch, write "
             f"{remedy_for(pairs)} in robot"
             + (
@@ -209,7 +196,7 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
         raise ScenarioError(
             f"planner.clearance: {both} are nearer than {kept:g} m at the start, so that no plan "
             "can succeed",
-            remedy="Choose a smaller clearance, or change robot.start or robot.parked; between "
+            remedy=f"Choose a smaller clearance, or change {start} or robot.parked; between "
             f"links that may come near, write {remedy_for(near)} in robot.",
             file=scenario.source,
         )
@@ -219,64 +206,7 @@ def _listed(names: list[str]) -> str:
     return " and ".join(f"'{name}'" for name in names)
 
 
-def check_reach(scenario: Scenario, arm: Arm, area: WorkArea) -> None:
-    """Check that some of the work area can be reached.
-
-    Raises:
-        ScenarioError: none of an object's can.
-    """
-    chain = arm.screw_chain()
-    for i, item in enumerate(area.objects):
-        nearest = np.clip(chain.shoulder[:2], item.lower[:2], item.upper[:2])
-        away = float(np.linalg.norm(np.append(nearest, item.z) - chain.shoulder))
-        if away > chain.reach + TOOL:
-            raise ScenarioError(
-                f"objects.{i}: the work area of '{item.name}' is out of reach: its nearest "
-                f"point is {away:.2f} m from the shoulder, the end effector gets "
-                f"{chain.reach:.2f} m",
-                remedy="Move the work area towards the robot; x, y and z are in metres, "
-                f"seen from '{scenario.robot.base}'.",
-                file=scenario.source,
-            )
-
-
-def covered_by_obstacles(workcell: Workcell, area: WorkArea) -> tuple[Covered, ...]:
-    """Obstacles that objects would stand inside somewhere in the work area, on a grid of places.
-
-    Nothing comes of it by itself: only with collisions checked, and only if the arm touches
-    something there, do plans fail.
-    """
-    plant, k = workcell.plant, len(area.objects)
-    if not workcell.obstacles:
-        return ()
-    root = workcell.diagram.CreateDefaultContext()
-    context = plant.GetMyMutableContextFromRoot(root)
-    graph = workcell.scene_graph.GetMyContextFromRoot(root)
-    shape = {
-        body.index(): plant.GetCollisionGeometriesForBody(body)[0]
-        for body in (*workcell.objects, *workcell.obstacles)
-    }
-    share = np.linspace(0.0, 1.0, PLACES)
-    inside = np.zeros((len(workcell.obstacles), k))
-    for x_share in share:
-        for y_share in share:
-            at = area.lower + np.array([x_share, y_share, 0.5]) * (area.upper - area.lower)
-            plant.SetPositions(context, workcell.positions(workcell.start, area.X_WO(at)))
-            query = workcell.scene_graph.get_query_output_port().Eval(graph)
-            for i, obstacle in enumerate(workcell.obstacles):
-                for j, body in enumerate(workcell.objects):
-                    pair = shape[obstacle.index()], shape[body.index()]
-                    distance = query.ComputeSignedDistancePairClosestPoints(*pair).distance
-                    inside[i, j] += distance < -STANDS_IN
-    return tuple(
-        Covered(obstacle.name(), area.objects[j].name, float(inside[i, j] / PLACES**2))
-        for i, obstacle in enumerate(workcell.obstacles)
-        for j in range(k)
-        if inside[i, j]
-    )
-
-
-def looks_aside(workcell: Workcell) -> str | None:
+def looks_aside(workcell: Workcell, place: str = "robot") -> str | None:
     """What is to be said where the end effector's z axis clearly does not point out of the hand."""
     plant, arm = workcell.plant, workcell.arm
     context, inspector = plant.CreateDefaultContext(), workcell.scene_graph.model_inspector()
@@ -287,5 +217,5 @@ def looks_aside(workcell: Workcell) -> str | None:
         return None
     return (
         f"the z axis of '{arm.end_effector}' is {np.rad2deg(angle):.0f} degrees from what looks "
-        f"like out of the hand ({told_by}); robot.end_effector_rotation turns it"
+        f"like out of the hand ({told_by}); {place}.end_effector_rotation turns it"
     )

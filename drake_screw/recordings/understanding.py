@@ -23,6 +23,7 @@ from drake_screw.recordings.object_places import hand_from_base, objects_of
 from drake_screw.recordings.places import FORMS
 from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.time_column import Time, gaps_in_words, rate_in_words, time_of
+from drake_screw.recordings.which_arm import travel
 from drake_screw.robot import Arm
 from drake_screw.screws.endless import TURN
 from drake_screw.tables import Table
@@ -43,12 +44,14 @@ class Robot:
         area: the objects, and where they may be.
         base: name of the frame that poses are seen from.
         velocity_limits: (n,) rad/s or m/s.
+        name: of the arm, where several may have been led.
     """
 
     arm: Arm
     area: WorkArea
     base: str
     velocity_limits: Array
+    name: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -65,12 +68,20 @@ class Understood:
         name: its name.
         facts: what was understood, in pairs of words.
         mapping: that says all of it.
+        travel: rad or m, how far the joint that moves most moves.
     """
 
     recording: Recording | None
     name: str
     facts: tuple[tuple[str, str], ...]
     mapping: Mapping
+    travel: float = 0.0
+
+    def noting(self, note: str) -> Understood:
+        """The same, with a note."""
+        kept = self.recording
+        kept = None if kept is None else replace(kept, notes=(*kept.notes, note))
+        return replace(self, recording=kept, facts=(*self.facts, ("note", note)))
 
 
 def understand(
@@ -130,7 +141,8 @@ def understand(
         *(("object", line) for line in placed.said),
         *(("note", note) for note in found.notes),
     )
-    return Understood(None if placed.missing else found, name, facts, said)
+    kept = None if placed.missing else found
+    return Understood(kept, name, facts, said, travel(found.q))
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,6 +31,8 @@ class Certificate:
         clearance: m, that the robot keeps from all else and itself, where that is checked.
         joint_margin: rad, that revolute joints keep from their limits.
         slide_margin: m, that prismatic ones keep.
+        arms: names of the robot's arms that a plan may be of, in the order in which they are tried;
+            () where there is only one.
         incomplete_shapes: links of the robot that lack collision shapes of its model; what touches
             there is not seen.
         strategy: name of the bandit.
@@ -79,6 +81,7 @@ class Certificate:
     joint_margin: float = 0.0
     slide_margin: float = 0.0
     ignored_collisions: tuple[tuple[str, str], ...] = ()
+    arms: tuple[str, ...] = ()
     incomplete_shapes: tuple[str, ...] = ()
     freedoms: tuple[Freedom, ...] = ()
     free_roll: str | None = None
@@ -138,7 +141,20 @@ class Certificate:
             f"This is of {self.regions} region{'' if self.regions == 1 else 's'}, with "
             f"{self.demonstrations} demonstration{'' if self.demonstrations == 1 else 's'}, for "
             f"places drawn uniformly in each region. To succeed is to have a plan {within} the "
-            f"joint limits of the robot's model{collisions}.{self._unseen()}{self._way_there()}"
+            f"joint limits of the robot's model{collisions}."
+            f"{self._of_arms()}{self._unseen()}{self._way_there()}"
+        )
+
+    def _of_arms(self) -> str:
+        if not self.arms:
+            return ""
+        *others, last = self.arms
+        listed = f"{', '.join(others)} or {last}" if others else last
+        rest = "the others rest where they start" if len(self.arms) > 2 else "the other one rests"
+        resting = f"; {rest}" if others else ""
+        return (
+            f" A plan is of one arm, {listed}, the first of these that can, from its own start"
+            f"{resting}."
         )
 
     def _unseen(self) -> str:
@@ -240,6 +256,7 @@ def certificate(
         joint_margin=setup.scenario.planner.joint_margin,
         slide_margin=setup.scenario.planner.slide_margin,
         ignored_collisions=setup.scenario.robot.ignore_collisions,
+        arms=tuple(one.name for one in setup.arms if one.among_several),
         incomplete_shapes=setup.workcell.model.incomplete,
         strategy=bandit.name,
         guarantee=bandit.guarantee,

@@ -110,9 +110,7 @@ def evenly(
     """
     setup, K = experiment.setup, regions.K
     x_y_yaw, region = draw_in_all(regions, EACH, seed=seed, round=0)
-    outcomes = setup.planner.any_success(
-        demonstrations, setup.area.X_WO(x_y_yaw), setup.workcell.start
-    )
+    outcomes = setup.planner.any_success(demonstrations, setup.area.X_WO(x_y_yaw), setup.start)
     evaluation = Evaluation(x_y_yaw, region, outcomes)
     samples = np.full(K, EACH)
     failures = np.bincount(region[evaluation.failed], minlength=K)

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import pytest
 
 from drake_screw import Setup, load_scenario
+from drake_screw.assembly.area_sanity import Covered, covered_by_obstacles
 from drake_screw.assembly.preview import preview
-from drake_screw.assembly.sanity import Covered, covered_by_obstacles
 from drake_screw.assembly.swap_model import swap_model
 from drake_screw.errors import ModelError, RunDirectoryError, ScenarioError
 from drake_screw.planning import Cause, connection
