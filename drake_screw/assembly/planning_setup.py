@@ -17,7 +17,7 @@ from drake_screw.assembly.workcell_parts import (
     table_config,
     work_area,
 )
-from drake_screw.planning import BatchPlanner, Planner, Symmetries
+from drake_screw.planning import BatchPlanner, Outcomes, Planner, Symmetries
 from drake_screw.planning.arms import ArmsPlanner
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.robot import (
@@ -154,6 +154,14 @@ class PlanningSetup:
     def careful_planner(self) -> CollisionFreePlanner:
         """Plans what is to be executed, whether or not the scenario looks at collisions."""
         return self.arms[0].careful_planner
+
+    def arm_of(self, outcome: Outcomes) -> ArmSetup:
+        """The arm that an outcome of shape () is of."""
+        return self.arms[int(outcome.arm)]
+
+    def arm_name(self, outcome: Outcomes) -> str | None:
+        """Its name, where there are several."""
+        return self.arm_of(outcome).name if self.arms[0].among_several else None
 
     def planner_of_all(self, *, careful: bool) -> Planner:
         """The planner for whichever arm can; that of the only one where there is no other.

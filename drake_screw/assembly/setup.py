@@ -13,7 +13,6 @@ from drake_screw.acquisition import AskingRule, Evaluator, Teacher, TreeEvaluato
 from drake_screw.acquisition.first import first_place
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
-from drake_screw.assembly.arm_setup import ArmSetup
 from drake_screw.assembly.arms_recorder import AnyRecorder, ArmsRecorder
 from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.planning_setup import PlanningSetup
@@ -106,14 +105,6 @@ class Setup(PlanningSetup):
                 planner = one.careful_planner.plan
         plan: Plan = planner(demonstration, X_WO, one.start, int(outcome.variant))
         return plan
-
-    def arm_of(self, outcome: Outcomes) -> ArmSetup:
-        """The arm that an outcome of shape () is of."""
-        return self.arms[int(outcome.arm)]
-
-    def arm_name(self, outcome: Outcomes) -> str | None:
-        """Its name, where there are several."""
-        return self.arm_of(outcome).name if self.arms[0].among_several else None
 
     @property
     def leads_around(self) -> bool | None:

@@ -12,7 +12,8 @@ from drake_screw.plugins import choices, find, is_known
 from drake_screw.recordings.mapping import FILE, Mapping, read_mapping
 from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.text_formats import is_rostopic
-from drake_screw.recordings.understanding import Robot, Understood, episodes_of, understand
+from drake_screw.recordings.understanding import episodes_of, understand
+from drake_screw.recordings.understood import Robot, Understood
 from drake_screw.recordings.which_arm import moving_arm, said_of_choice
 from drake_screw.tables.text import Progress
 from drake_screw.typing import PathLike

@@ -77,6 +77,7 @@ def test_what_is_shipped_is_listed(command: Command) -> None:
     shipped = json.loads(out)
     assert [item["name"] for item in shipped["scenarios"]] == [
         "pouring",
+        "pouring_both",
         "pouring_iiwa",
         "pouring_panda",
         "pouring_paper",

@@ -431,8 +431,8 @@ def test_unknown_name_lists_the_shipped_ones() -> None:
     error = error_of("pourng")
     assert error.message == "no scenario 'pourng'"
     assert error.remedy is not None
-    shipped = "pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e, scooping, "
-    shipped += "scooping_paper"
+    shipped = "pouring, pouring_both, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e, "
+    shipped += "scooping, scooping_paper"
     assert error.remedy.startswith(f"Did you mean 'pouring'? Shipped scenarios: {shipped}.")
 
 
@@ -442,7 +442,7 @@ def test_missing_file_suggests_its_neighbour(write: Callable[..., Path]) -> None
     error = error_of(wrong)
     assert error.message == f"no file '{wrong}'"
     assert f"Did you mean '{file}'? " in (error.remedy or "")
-    assert "pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e" in (
+    assert "pouring, pouring_both, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e" in (
         error.remedy or ""
     )
 
