@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 from pydantic import ConfigDict, Field, model_validator
 from pydantic.config import JsonDict
@@ -56,6 +56,10 @@ class ArmBlock(Block):
 def _one_arm_or_several(schema: JsonDict) -> None:
     """Says in the JSON Schema of a robot what `RobotBlock` checks by itself."""
     schema["required"] = ["model"]
+    keys = schema["properties"]
+    assert isinstance(keys, dict)
+    for name in _NEEDED:
+        keys[name] = {**cast(JsonDict, keys[name]), "default": None}
     schema["if"] = {"required": ["arms"]}
     schema["then"] = {"not": {"anyOf": [{"required": [key]} for key in _OF_ONE_ARM]}}
     schema["else"] = {"required": list(_NEEDED)}

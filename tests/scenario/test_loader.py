@@ -16,6 +16,7 @@ from drake_screw.demonstrations import FaithfulConfig, SegmentationConfig
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
 from drake_screw.scenario.loader import dump_scenario, load_scenario, load_stored_scenario
+from drake_screw.scenario.robot_blocks import RecordedOnBlock, RobotBlock
 from drake_screw.scenario.run_blocks import (
     AdaptiveBlock,
     CoverageBlock,
@@ -27,12 +28,7 @@ from drake_screw.scenario.run_blocks import (
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.segmentation_block import SegmentationBlock
 from drake_screw.scenario.values import Interval
-from drake_screw.scenario.workcell_blocks import (
-    ObjectBlock,
-    RecordedOnBlock,
-    RobotBlock,
-    TableBlock,
-)
+from drake_screw.scenario.workcell_blocks import ObjectBlock, TableBlock
 from drake_screw.tasks import AXES
 
 SMALL = """\
@@ -365,7 +361,7 @@ def test_all_problems_are_told_at_once(write: Callable[..., Path]) -> None:
     assert error.message.splitlines() == [
         "3 problems",
         "  line 2: robot.end_effector: missing; expected text",
-        "    Meaning: name of the frame that the demonstrations move.",
+        "    Meaning: name of the frame that the demonstrations move; needed without `arms`.",
         "  line 10: table.topp: unknown key",
         "    Did you mean 'top'? Keys of table: center, size, top, thickness",
         "  line 21: coverage.beta: expected a number, found text 'high'",
