@@ -48,7 +48,7 @@ class Setup(PlanningSetup):
         scenario: the description.
         teacher: makes who gives demonstrations; an interactive teacher has to be passed in.
         strategy: makes the bandit of a grid.
-        planner: makes the planner that decides.
+        planner: makes the planner that decides; of several arms it is asked with `start`, of all.
         motion: what a simulated teacher shows.
         ask: chooses where the next demonstration is asked for.
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import Setup
+from drake_screw import Setup, load_scenario
+from drake_screw.assembly.freedoms import freedoms
 from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.ways import why_failed
 from drake_screw.demonstrations import Demonstration
@@ -151,6 +152,16 @@ def test_the_first_demonstration_is_asked_for_where_the_nearest_shoulder_is_far(
     np.testing.assert_array_equal(far.first[0, :2], [0.7, 1.2])
     assert far.nearest_arm(np.array([[0.5, 0.4, 0.0]])).name == "left"
     assert far.nearest_arm(np.array([[0.5, -0.1, 0.0]])).name == "right"
+
+
+def test_symmetries_of_tools_are_told_apart_where_they_differ() -> None:
+    round_cup = "{symmetry: {axis: x, turns: any}}"
+    one = load_scenario("pouring_both", [f"robot.arms.1.tool={round_cup}"])
+    assert [freedom.body for freedom in freedoms(one)] == ["bowl", "right tool"]
+    assert "the end effector may be turned" in str(freedoms(one)[1])
+    changes = [f"robot.arms.{i}.tool={round_cup}" for i in range(2)]
+    both = load_scenario("pouring_both", changes)
+    assert [freedom.body for freedom in freedoms(both)] == ["bowl", "tool"]
 
 
 def test_tools_rest_with_their_arms(tmp_path: Path) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 from drake_screw import Setup, load_scenario
 from drake_screw.acquisition import Finished
+from drake_screw.assembly.looking import look_at_path
 from drake_screw.assembly.preview import preview
 from drake_screw.demonstrations import write_recording
 from drake_screw.errors import RecordingError
@@ -20,6 +22,7 @@ from drake_screw.runs.outcome_table import tabulate_outcomes
 from drake_screw.runs.run import new_run, open_run
 from drake_screw.runs.trajectory import write_trajectory
 from drake_screw.web.inspector_page import save_page
+from drake_screw.web.look_page import look_page
 from drake_screw.web.selection import select
 from tests.assembly.two_arms import START, scenario_in, setup_in, shown
 
@@ -141,6 +144,16 @@ def test_a_recording_of_both_arms_is_of_the_one_that_moves(tmp_path: Path, numbe
     learned = setup.learn(read)
     expected = setup.arms[number].arm.pose(shown(setup, number).q[-1])
     np.testing.assert_allclose(learned.path[-1], expected, atol=1e-6)
+
+
+def test_the_page_of_a_recording_moves_the_arm_that_was_led(folder: Path) -> None:
+    setup = Setup(load_scenario(folder / "two_arms.yaml"))
+    looks = look_at_path(setup, folder / "recordings" / "demo_01")
+    assert looks.looks[0].recording.joint_names[0] == "r1"
+    with patch("drake_screw.web.look_page.animate") as moved:
+        look_page(looks)
+    (call,) = moved.call_args_list
+    assert call.args[1].arm.joint_names == ("r1", "r2", "r3")
 
 
 def test_an_arm_that_rests_is_not_taken_for_one_whose_angles_cannot_be(tmp_path: Path) -> None:
