@@ -146,15 +146,13 @@ class Certificate:
         )
 
     def _of_arms(self) -> str:
-        if not self.arms:
+        if len(self.arms) < 2:
             return ""
         *others, last = self.arms
-        listed = f"{', '.join(others)} or {last}" if others else last
-        rest = "the others rest where they start" if len(self.arms) > 2 else "the other one rests"
-        resting = f"; {rest}" if others else ""
+        rest = "the others rest" if len(others) > 1 else "the other rests"
         return (
-            f" A plan is of one arm, {listed}, the first of these that can, from its own start"
-            f"{resting}."
+            f" A plan is of one arm, {', '.join(others)} or {last}, the first of these that can, "
+            f"from its own start; {rest} at {'theirs' if len(others) > 1 else 'its own'}."
         )
 
     def _unseen(self) -> str:
@@ -256,7 +254,7 @@ def certificate(
         joint_margin=setup.scenario.planner.joint_margin,
         slide_margin=setup.scenario.planner.slide_margin,
         ignored_collisions=setup.scenario.robot.ignore_collisions,
-        arms=tuple(one.name for one in setup.arms if one.among_several),
+        arms=tuple(arm.name for arm in setup.scenario.robot.arms or ()),
         incomplete_shapes=setup.workcell.model.incomplete,
         strategy=bandit.name,
         guarantee=bandit.guarantee,

@@ -19,7 +19,10 @@ EARLIER = SimpleNamespace(samples=48, attempted=False)
 ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 
 
-def scenario_of(collision=False, objects=(), tool=None, approach="screw", ignored=(), **kept):
+def scenario_of(
+    collision=False, objects=(), tool=None, approach="screw", ignored=(), arms=(), **kept
+):
+    each = [SimpleNamespace(name=n, tool=tool, end_effector="hand") for n in arms or ("arm",)]
     return SimpleNamespace(
         coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
         planner=SimpleNamespace(
@@ -30,7 +33,9 @@ def scenario_of(collision=False, objects=(), tool=None, approach="screw", ignore
             turns=24,
         ),
         objects=objects,
-        robot=SimpleNamespace(tool=tool, ignore_collisions=ignored, end_effector="hand"),
+        robot=SimpleNamespace(
+            arms=each if arms else None, each_arm=each, ignore_collisions=ignored
+        ),
     )
 
 
@@ -100,6 +105,25 @@ def test_what_is_kept_is_said() -> None:
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=sliding)
     assert stated.slide_margin == 0.01
     assert "at least 0.1 rad and 0.01 m, where joints slide, within the joint limits" in text
+
+
+@pytest.mark.parametrize(
+    ("arms", "said"),
+    [
+        (("one",), "of one arm, one, the first of these that can, from its own start."),
+        (
+            ("a", "b"),
+            "of one arm, a or b, the first of these that can, from its own start; the other",
+        ),
+        (("a", "b", "c"), "a, b or c, the first of these that can, from its own start; the others"),
+    ],
+)
+def test_which_arms_may_be_used_is_said(arms: tuple[str, ...], said: str) -> None:
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario_of(arms=arms))
+    assert stated.arms == arms
+    assert said in text
+    _, _, text = stated_by("eprocess", [0.0, 0.0, 0.0])
+    assert "A plan is of one arm" not in text
 
 
 def test_what_may_touch_is_said() -> None:
