@@ -110,11 +110,12 @@ def test_what_is_kept_is_said() -> None:
 @pytest.mark.parametrize(
     ("arms", "said"),
     [
-        (("one",), "of one arm, one, the first of these that can, from its own start."),
+        (("one",), "joint limits of the robot's model; collisions do not count. Of what"),
         (
             ("a", "b"),
-            "of one arm, a or b, the first of these that can, from its own start; the other",
+            "A plan is of one arm, a or b, the first of these that can, from its own start",
         ),
+        (("a", "b"), "; the other rests at its own."),
         (("a", "b", "c"), "a, b or c, the first of these that can, from its own start; the others"),
     ],
 )
