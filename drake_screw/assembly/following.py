@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from drake_screw.assembly.workcell_parts import robot_config
 from drake_screw.robot import Arm
 from drake_screw.robot.directions import has, missing_turn
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.values import AXES
+from drake_screw.typing import Array
 
 LETTERS = {vector: name for name, vector in AXES.items()}
 
@@ -27,18 +27,20 @@ def free_roll(scenario: Scenario) -> str | None:
     axis = scenario.planner.roll_axis
     if axis is None:
         return None
+    hands = " or ".join(f"'{arm.end_effector}'" for arm in scenario.robot.each_arm)
     return (
         "Position and one axis of the hand are followed: how far it is turned about the "
-        f"{axis_words(axis)} of '{scenario.robot.end_effector}' is free, and may be anything."
+        f"{axis_words(axis)} of {hands} is free, and may be anything."
     )
 
 
-def cannot_follow(scenario: Scenario, arm: Arm) -> Iterator[str]:
+def cannot_follow(scenario: Scenario, arm: Arm, start: Array) -> Iterator[str]:
     """Sentences on screws that an arm lacks joints for, and what to do about it.
 
     Args:
         scenario: says what is followed.
         arm: to follow it.
+        start: (n,) rad or m, where its plans start.
     """
     chain, axis = arm.screw_chain(), scenario.planner.roll_axis
     how_many = f"{arm.n} joint{'' if arm.n == 1 else 's'}"
@@ -48,7 +50,7 @@ def cannot_follow(scenario: Scenario, arm: Arm) -> Iterator[str]:
         yield (
             f"{how_many}: the hand cannot be turned and moved in all six directions, and a "
             "screw in general cannot be followed: plans fail as out of reach where "
-            f"the bodies' places ask for another{_lacks(arm, robot_config(scenario).start)}"
+            f"the bodies' places ask for another{_lacks(arm, start)}"
         )
         usable = [name for name, vector in AXES.items() if has(chain, vector)]
         if usable:
@@ -80,7 +82,7 @@ def _no_axis(arm: Arm, axis: tuple[float, float, float], how_many: str) -> str:
     )
 
 
-def _lacks(arm: Arm, q: tuple[float, ...]) -> str:
+def _lacks(arm: Arm, q: Array) -> str:
     """Which turn an arm of five joints lacks at q (n,), as the end of a sentence; "" of others."""
     if arm.n != 5:
         return ""

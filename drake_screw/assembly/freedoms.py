@@ -14,7 +14,7 @@ class Freedom:
     """A symmetry that is taken for granted.
 
     Attributes:
-        body: name of the object, or "tool".
+        body: name of the object, or "tool"; "left tool" where the tools of several arms differ.
         axis: of its frame, about which it may be turned: "x", "y" or "z".
         turns: how many turns in a full one are taken to be the same; "any" for a body of
             revolution.
@@ -33,7 +33,8 @@ class Freedom:
         else:
             held = f"the same after each of {self.turns} equal turns"
             turned = "by any of them"
-        what = "the end effector" if self.body == TOOL else "what is done to it"
+        held_by_hand = self.body == TOOL or self.body.endswith(f" {TOOL}")
+        what = "the end effector" if held_by_hand else "what is done to it"
         return (
             f"The {self.body} is taken to be {held} about its {self.axis} axis; {what} may be "
             f"turned with it {turned}."
@@ -41,10 +42,15 @@ class Freedom:
 
 
 def freedoms(scenario: Scenario) -> tuple[Freedom, ...]:
-    """Those of the objects, in their order, and of the tool."""
-    tool, tried = scenario.robot.tool, scenario.planner.turns
+    """Those of the objects, in their order, and of the tools."""
+    tried, arms = scenario.planner.turns, scenario.robot.each_arm
+    held = [None if arm.tool is None else arm.tool.symmetry for arm in arms]
     bodies = [(o.name, o.symmetry) for o in scenario.objects]
-    bodies += [(TOOL, None if tool is None else tool.symmetry)]
+    if all(symmetry == held[0] for symmetry in held):
+        bodies.append((TOOL, held[0]))
+    else:
+        named = zip(arms, held, strict=True)
+        bodies += [(f"{arm.name} {TOOL}", symmetry) for arm, symmetry in named]
     return tuple(
         Freedom(
             body=body,
@@ -55,3 +61,10 @@ def freedoms(scenario: Scenario) -> tuple[Freedom, ...]:
         for body, block in bodies
         if block is not None
     )
+
+
+def tool_touches(scenario: Scenario) -> tuple[str, ...]:
+    """What the things in the hands may touch, each once."""
+    tools = (arm.tool for arm in scenario.robot.each_arm)
+    names = (name for tool in tools if tool is not None for name in tool.touches)
+    return tuple(dict.fromkeys(names))

@@ -5,15 +5,22 @@ from __future__ import annotations
 from drake_screw.assembly.following import cannot_follow, free_roll
 from drake_screw.robot import Arm
 from drake_screw.scenario.schema import Scenario
+from drake_screw.typing import Array
 
 SHORT = 1.0
 """m. A slide with less of a range soon comes to its end, where a metre counts as a radian."""
 
 
-def hints(scenario: Scenario, arm: Arm) -> tuple[str, ...]:
-    """Sentences on what is left free, or likely to go wrong, and what to do about it."""
-    free = free_roll(scenario)
-    return (*([free] if free else []), *cannot_follow(scenario, arm), *_short_slides(scenario, arm))
+def hints(scenario: Scenario, arm: Arm, start: Array) -> tuple[str, ...]:
+    """Sentences on what is left free, or likely to go wrong, and what to do about it.
+
+    Args:
+        scenario: says what is followed.
+        arm: to follow it.
+        start: (n,) rad or m, where its plans start.
+    """
+    free, lacks = free_roll(scenario), cannot_follow(scenario, arm, start)
+    return (*([free] if free else []), *lacks, *_short_slides(scenario, arm))
 
 
 def _short_slides(scenario: Scenario, arm: Arm) -> tuple[str, ...]:

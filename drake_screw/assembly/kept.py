@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from drake_screw.acquisition import RecordedTeacher
 from drake_screw.assembly.setup import Setup
-from drake_screw.assembly.why_not import why_not
+from drake_screw.assembly.ways import why_failed
 from drake_screw.demonstrations import Look, Recording
 from drake_screw.errors import counted
 
@@ -38,13 +38,13 @@ def kept(setup: Setup, recordings: Sequence[Recording]) -> tuple[str, ...]:
 
 def _cannot_follow(setup: Setup, look: Look) -> str:
     """What the arm cannot follow of a recording where it was shown, as the end of a sentence."""
-    demonstration, start = look.demonstration, setup.workcell.start
+    demonstration = look.demonstration
     if demonstration is None:
         return ""
-    outcomes = setup.planner.all_outcomes([demonstration], look.X_WO[None], start)
+    outcomes = setup.planner.all_outcomes([demonstration], look.X_WO[None], setup.start)
     if outcomes.success[0, 0]:
         return ""
-    why = why_not(outcomes[0], [demonstration], look.X_WO, start, setup.careful_planner)
-    why = why.removeprefix(f"with {demonstration.name}, ")
+    why = why_failed(setup.arms, outcomes[0], [demonstration], look.X_WO)
+    why = why.replace(f"with {demonstration.name}, ", "")
     segments = counted(len(demonstration.objects), "segment")
     return f"; not planned where it was shown, of {segments}: {why}"

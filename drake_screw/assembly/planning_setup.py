@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-import logging
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from drake_screw.assembly.sanity import (
-    check_shapes,
-    check_start,
-    check_start_is_free,
-    kept_within,
-)
-from drake_screw.assembly.symmetries import symmetries
+from drake_screw.acquisition.nearest_arm import nearest_first
+from drake_screw.assembly.arm_setup import ArmSetup
 from drake_screw.assembly.work_area_checks import check_reach, check_room
 from drake_screw.assembly.workcell_parts import (
     object_configs,
     obstacle_configs,
-    robot_config,
+    robot_configs,
     table_config,
     work_area,
 )
-from drake_screw.errors import ModelError
-from drake_screw.planning import BatchPlanner, Symmetries
-from drake_screw.planning.approach import seeds
+from drake_screw.planning import BatchPlanner, Outcomes, Planner, Symmetries
+from drake_screw.planning.arms import ArmsPlanner
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.robot import (
     MeshShape,
@@ -34,17 +27,18 @@ from drake_screw.robot import (
     RobotConfig,
     TableConfig,
     Workcell,
-    build_workcell,
 )
 from drake_screw.robot.srdf import srdf_of
 from drake_screw.scenario.schema import Scenario
 from drake_screw.tasks import GridRegions, WorkArea
-
-_log = logging.getLogger(__name__)
+from drake_screw.typing import Array
 
 
 class PlanningSetup:
     """Workcell, work area and planner of a scenario, each built when it is first asked for.
+
+    What is of an arm is that of the first one, which is the only one as a rule; `arms` has the
+    others.
 
     Args:
         scenario: the description.
@@ -54,9 +48,18 @@ class PlanningSetup:
         self.scenario = scenario
 
     @cached_property
+    def arms(self) -> tuple[ArmSetup, ...]:
+        """Each arm that is planned for, in the order in which they are tried."""
+        around = self.table, self.objects, self.obstacles
+        return tuple(
+            ArmSetup(self.scenario, number, robot, *around)
+            for number, robot in enumerate(robot_configs(self.scenario))
+        )
+
+    @property
     def robot(self) -> RobotConfig:
         """Which arm of which model, and what it holds."""
-        return robot_config(self.scenario)
+        return self.arms[0].robot
 
     @cached_property
     def table(self) -> TableConfig | None:
@@ -79,23 +82,35 @@ class PlanningSetup:
 
         Raises:
             ModelError: the model lacks a name, or a mesh cannot be read.
-            ScenarioError: the start is outside the limits, or not free of obstacles, the work area
+            ScenarioError: a start is outside the limits, or not free of obstacles, the work area
                 is out of reach, a region has no room for objects that must not overlap, or
                 collision shapes are missing.
         """
-        try:
-            workcell = build_workcell(
-                self.robot, table=self.table, objects=self.objects, obstacles=self.obstacles
-            )
-        except ModelError as error:
-            file = error.file or self.scenario.source
-            raise ModelError(error.message, remedy=error.remedy, file=file) from error
-        check_shapes(self.scenario, workcell)
-        check_start(self.scenario, workcell)
-        check_start_is_free(self.scenario, workcell)
-        check_reach(self.scenario, workcell.arm, self.area)
+        check_reach(self.scenario, [one.arm for one in self.arms], self.area)
+        workcell = self.arms[0].workcell
         check_room(self.scenario, self.regions)
         return workcell
+
+    @property
+    def workcells(self) -> tuple[Workcell, ...]:
+        """That of each arm."""
+        return self.workcell, *(one.workcell for one in self.arms[1:])
+
+    @cached_property
+    def start(self) -> Array:
+        """Where all arms start, rad or m, those of one after those of another: for `Planner`."""
+        return np.concatenate([one.start for one in self.arms])
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What is taken for what the model does not state of the arms, a line each."""
+        lines = (line for one in self.arms for line in one.arm.assumptions)
+        return tuple(dict.fromkeys(lines))
+
+    def nearest_arm(self, coordinates: Array) -> ArmSetup:
+        """The arm whose shoulder is nearest to the first object of an instance (k, c)."""
+        shoulders = np.stack([one.arm.screw_chain().shoulder for one in self.arms])
+        return self.arms[int(nearest_first(shoulders, self.area.X_WO(coordinates))[0])]
 
     @property
     def srdf(self) -> dict[str, Path]:
@@ -106,9 +121,8 @@ class PlanningSetup:
     @property
     def meshes(self) -> dict[str, Path]:
         """Files of the meshes in the workcell, by their places in the scenario."""
-        tool = self.robot.tool
         shapes = {f"obstacles.{item.name}": item.shape for item in self.obstacles}
-        shapes |= {} if tool is None else {"robot.tool": tool.shape}
+        shapes |= {tool.place: tool.shape for tool in self.robot.tools}
         return {
             place: shape.solid.file
             for place, shape in shapes.items()
@@ -126,37 +140,39 @@ class PlanningSetup:
         counts = np.array(self.scenario.cells)[:, : len(self.area.axes)]
         return GridRegions(self.area, counts)
 
-    @cached_property
+    @property
     def batch_planner(self) -> BatchPlanner:
         """The planner that watches joint limits and reach."""
-        block = self.scenario.planner
-        chain = kept_within(self.scenario, self.workcell.arm)
-        return BatchPlanner(
-            chain,
-            tolerance=block.tolerance,
-            symmetries=self.symmetries,
-            seeds=seeds(chain, block.ik_seeds) if block.approach == "free" else None,
-            redundancy=block.redundancy,
-            free_axis=block.roll_axis,
-        )
+        return self.arms[0].batch_planner
 
-    @cached_property
+    @property
     def symmetries(self) -> Symmetries:
         """Turns of objects and of what the end effector holds, which leave the task as it is.
 
         Raises:
             ModelError: the tool's frame is not one that the end effector carries.
         """
-        return symmetries(self.scenario, self.workcell.arm)
+        return self.arms[0].symmetries
 
-    @cached_property
+    @property
     def careful_planner(self) -> CollisionFreePlanner:
         """Plans what is to be executed, whether or not the scenario looks at collisions."""
-        if self.workcell.model.incomplete:
-            _log.warning(
-                "collision checks are incomplete: shapes are missing of %s",
-                ", ".join(self.workcell.model.incomplete),
-            )
-        return CollisionFreePlanner(
-            self.batch_planner, self.workcell, self.scenario.planner.clearance
-        )
+        return self.arms[0].careful_planner
+
+    def arm_of(self, outcome: Outcomes) -> ArmSetup:
+        """The arm that an outcome of shape () is of."""
+        return self.arms[int(outcome.arm)]
+
+    def arm_name(self, outcome: Outcomes) -> str | None:
+        """Its name, where there are several."""
+        return self.arm_of(outcome).name if self.arms[0].among_several else None
+
+    def planner_of_all(self, *, careful: bool) -> Planner:
+        """The planner for whichever arm can; that of the only one where there is no other.
+
+        Args:
+            careful: watches collisions, too.
+        """
+        _ = self.workcell
+        each = [one.careful_planner if careful else one.batch_planner for one in self.arms]
+        return each[0] if len(each) == 1 else ArmsPlanner(each)

@@ -6,13 +6,11 @@ import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
 from drake_screw.acquisition import UsableLessons, random_suggestion
 from drake_screw.assembly.freedoms import Freedom, freedoms
-from drake_screw.assembly.hints import hints
 from drake_screw.assembly.kept import kept, named_recordings, teacher_recordings
 from drake_screw.assembly.preview_notes import notes
 from drake_screw.assembly.preview_parts import (
@@ -24,12 +22,16 @@ from drake_screw.assembly.preview_parts import (
     PreviewedTool,
     PreviewedTree,
 )
-from drake_screw.assembly.sanity import (
-    looks_aside,
-    missing_shapes,
-    not_shown,
-    touching_at_start,
+from drake_screw.assembly.preview_workcell import (
+    all_hints,
+    all_that_look_aside,
+    farthest_corner,
+    previewed_arm,
+    previewed_objects,
+    previewed_tool,
 )
+from drake_screw.assembly.recorder import Recorder
+from drake_screw.assembly.sanity import missing_shapes, not_shown, touching_at_start
 from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.work_area_checks import Covered, covered_by_obstacles
 from drake_screw.bandits import CertifyOrSplit
@@ -50,7 +52,8 @@ class Preview:
 
     Attributes:
         scenario, description: its name, and its own words.
-        robot: the arm that is planned for.
+        robot: the arm that is planned for, the first of several.
+        arms: each of several; () where there is only one.
         tool: what the end effector holds, if that has a shape.
         objects: where they may stand.
         obstacles: what else stands around.
@@ -91,6 +94,7 @@ class Preview:
     scenario: str
     description: str
     robot: PreviewedArm
+    arms: tuple[PreviewedArm, ...]
     tool: PreviewedTool | None
     objects: tuple[PreviewedObject, ...]
     obstacles: tuple[PreviewedObstacle, ...]
@@ -132,9 +136,11 @@ class Preview:
 
     def _lines(self) -> Iterator[tuple[str, str]]:
         yield "scenario", f"{self.scenario}: {self.description}".rstrip(": ")
-        yield "robot", f"{self.robot}, reach {self.robot.reach:.2f} m"
-        if self.tool is not None:
-            yield "tool", str(self.tool)
+        for each in self.arms or (self.robot,):
+            yield "robot", f"{each}, reach {each.reach:.2f} m"
+            tool = each.tool if self.arms else self.tool
+            if tool is not None:
+                yield "tool", str(tool)
         yield from (("object", str(item)) for item in self.objects)
         yield from (("", f"  {freedom}") for freedom in self.freedoms)
         yield from (("obstacle", str(item)) for item in self.obstacles)
@@ -183,22 +189,21 @@ def preview(scenario: Scenario) -> Preview:
         DrakeScrewError: whatever would make the run fail on its input.
     """
     setup = Setup(scenario)
-    arm, goal, tree, block = setup.workcell.arm, setup.goal, setup.tree, scenario.teacher
+    goal, tree, block, first = setup.goal, setup.tree, scenario.teacher, setup.arms[0]
     asking, recordings = scenario.demonstrations, teacher_recordings(setup)
-    chain, recorder = arm.screw_chain(), setup.recorder
+    recorder = setup.recorder
     rate, no_demonstration = _plans_per_second(setup)
     other = None
-    if recorder.model_file is not None:
+    if isinstance(recorder, Recorder) and recorder.model_file is not None:
         names = recorder.model_file.stem, recorder.arm.joint_names, recorder.arm.end_effector
         other = PreviewedArm(*names, recorder.arm.screw_chain().reach)
     return Preview(
         scenario=scenario.name,
         description=scenario.description,
-        robot=PreviewedArm(
-            setup.workcell.model_file.stem, arm.joint_names, arm.end_effector, chain.reach
-        ),
-        tool=_tool(setup),
-        objects=_objects(setup),
+        robot=previewed_arm(first),
+        arms=tuple(previewed_arm(one) for one in setup.arms if one.among_several),
+        tool=previewed_tool(first),
+        objects=previewed_objects(setup),
         obstacles=tuple(
             PreviewedObstacle(o.name, str(o.shape.solid), o.shape.xyz, o.shape.rpy)
             for o in setup.obstacles
@@ -225,42 +230,17 @@ def preview(scenario: Scenario) -> Preview:
         ask=asking.ask,
         first=asking.first if asking.initial and isinstance(asking.initial, int) else None,
         budget=asking.budget,
-        farthest_corner=_farthest_corner(setup),
-        assumed=arm.assumptions,
+        farthest_corner=farthest_corner(setup),
+        assumed=setup.assumptions,
         lacks_ompl=setup.leads_around is False,
         samples=_samples(setup),
         plans_per_second=rate,
         no_demonstration=no_demonstration,
         ignored_collisions=scenario.robot.ignore_collisions,
         touching_at_start=touching_at_start(setup.workcell),
-        hints=hints(scenario, arm),
-        looks_aside=looks_aside(setup.workcell),
+        hints=all_hints(setup),
+        looks_aside=all_that_look_aside(setup),
     )
-
-
-def _tool(setup: Setup) -> PreviewedTool | None:
-    tool = setup.robot.tool
-    if tool is None:
-        return None
-    return PreviewedTool(str(tool.shape.solid), tool.frame, tool.touches)
-
-
-def _objects(setup: Setup) -> tuple[PreviewedObject, ...]:
-    found = []
-    for o in setup.area.objects:
-        x, y, yaw, _, roll, pitch = zip(o.least, o.greatest, strict=True)
-        found.append(PreviewedObject(o.name, x, y, yaw, o.z, roll, pitch, o.any_orientation, o.on))
-    return tuple(found)
-
-
-def _farthest_corner(setup: Setup) -> float:
-    corners = []
-    for i, o in enumerate(setup.area.objects):
-        x, y, _, z, *_ = zip(o.least, o.greatest, strict=True)
-        X_WP = setup.area.X_WP(i)
-        corners += [X_WP[:3, :3] @ corner + X_WP[:3, 3] for corner in product(x, y, z)]
-    shoulder = setup.workcell.arm.screw_chain().shoulder
-    return float(np.linalg.norm(np.array(corners) - shoulder, axis=1).max())
 
 
 def _samples(setup: Setup) -> PreviewedSamples:
@@ -293,7 +273,7 @@ def _plans_per_second(setup: Setup) -> tuple[float | None, str | None]:
         return None, lesson.remark
     demonstration = setup.learn(lesson.recording)
     X_WO = setup.area.X_WO(anywhere(setup.area, rng, PROBE))
-    setup.planner.any_success([demonstration], X_WO[:1], setup.workcell.start)
+    setup.planner.any_success([demonstration], X_WO[:1], setup.start)
     began = time.perf_counter()
-    setup.planner.any_success([demonstration], X_WO, setup.workcell.start)
+    setup.planner.any_success([demonstration], X_WO, setup.start)
     return PROBE / (time.perf_counter() - began), None

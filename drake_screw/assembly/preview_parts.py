@@ -16,16 +16,22 @@ ASKED_FIRST = {
 
 @dataclass(frozen=True)
 class PreviewedArm:
-    """An arm: its model's name, its joints and end effector, and its reach in m."""
+    """An arm: its model's name, its joints and end effector, and its reach in m.
+
+    Of one among several also its name, and what it holds.
+    """
 
     model: str
     joints: tuple[str, ...]
     end_effector: str
     reach: float
+    name: str | None = None
+    tool: PreviewedTool | None = None
 
     def __str__(self) -> str:
         joints = counted(len(self.joints), "joint")
-        return f"{self.model}, {joints}, end effector '{self.end_effector}'"
+        of = "" if self.name is None else f"arm {self.name}: "
+        return f"{of}{self.model}, {joints}, end effector '{self.end_effector}'"
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from drake_screw.assembly.why_not import why_not
+from drake_screw.assembly.ways import Way, why_none
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import ScenarioError, counted
 from drake_screw.execution import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Outcomes, Plan, Turned
-from drake_screw.planning.batch import BatchPlanner
-from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.planning.plan_checker import FAR, PlanChecker
 from drake_screw.robot import Arm
 from drake_screw.typing import Array
@@ -40,6 +38,7 @@ class RankedPlan:
         checker: of the workcell.
         X_WO: (k, 4, 4) the objects.
         alternatives: the next best plans, the best one first.
+        arm_name: the arm's, where the robot has several that are planned for; the others rest.
     """
 
     demonstration: Demonstration
@@ -50,6 +49,7 @@ class RankedPlan:
     checker: PlanChecker
     X_WO: Array
     alternatives: tuple[RankedPlan, ...] = ()
+    arm_name: str | None = None
 
     @cached_property
     def margins(self) -> dict[str, float]:
@@ -115,19 +115,18 @@ class RankedPlan:
 
     def __str__(self) -> str:
         turned = "".join(f", with {turn}" for turn in self.turned)
+        of = "" if self.arm_name is None else f" with arm {self.arm_name}"
         return (
-            f"{self.demonstration.name}{turned}: {counted(len(self.plan.guides), 'segment')}; "
+            f"{self.demonstration.name}{of}{turned}: {counted(len(self.plan.guides), 'segment')}; "
             f"{self.tightest} comes nearest to a limit, {self.margin:.1%} of its range away; "
             f"{self._kept()}"
         )
 
 
 def best_plan(
-    planner: CollisionFreePlanner,
-    arm: Arm,
+    ways: Sequence[Way],
     demonstrations: Sequence[Demonstration],
     X_WO: ArrayLike,
-    q_start: ArrayLike,
     names: Sequence[str],
     most: int = 5,
     speed: TimeLimits | None = None,
@@ -136,15 +135,14 @@ def best_plan(
 
     Of several with the same margin the one with the largest clearance, then the shortest.
 
-    Every turn of every demonstration is tried; where the approach is free and no screw leads to the
-    first guiding pose, the other ways to it are, too, and at last those around what is in the way.
+    Every turn of every demonstration is tried with every arm; where the approach is free and no
+    screw leads to the first guiding pose, the other ways to it are, too, and at last those around
+    what is in the way.
 
     Args:
-        planner: for limits, reach and collisions.
-        arm: that is planned for.
+        ways: the arms to plan for, from where they start.
         demonstrations: D of them.
         X_WO: (k, 4, 4) the objects.
-        q_start: (n,) rad or m.
         names: of the k objects.
         most: plans to return, the best one and its alternatives.
         speed: how fast they are to be executed.
@@ -152,48 +150,71 @@ def best_plan(
     Raises:
         ScenarioError: there is no plan; it says why.
     """
-    X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
+    X_WO = np.asarray(X_WO, dtype=float)
 
-    def ranked(plans: list[tuple[Demonstration, Plan]]) -> list[RankedPlan]:
+    def ranked(way: Way, plans: list[tuple[Demonstration, Plan]]) -> list[RankedPlan]:
         found = []
         for demonstration, plan in plans:
-            turned = planner.planner.symmetries.named(demonstration, X_WO, plan.angles, names)
-            how = arm, speed or TimeLimits(), planner.checker, X_WO
+            symmetries = way.planner.planner.symmetries
+            turned = symmetries.named(demonstration, X_WO, plan.angles, names)
+            how = way.arm, speed or TimeLimits(), way.planner.checker, X_WO, (), way.name
             found.append(RankedPlan(demonstration, plan, turned, *how))
-        return sorted(found, key=lambda one: (-one.margin, one.length))
+        return found
 
-    candidates = ranked(_plans(planner.planner, demonstrations, X_WO, q_start))
-    found: list[RankedPlan] = []
-    for first in range(0, len(candidates), CHECKED):
-        some = candidates[first : first + CHECKED]
-        poses = np.broadcast_to(X_WO, (len(some), *X_WO.shape))
-        touching = planner.checker.first_collisions([c.plan for c in some], poses).collides
-        found += [c for c, touches in zip(some, touching, strict=True) if not touches]
-        following = candidates[first + CHECKED :]
-        if len(found) >= most and following and following[0].margin < found[-1].margin:
-            break
+    found = [
+        one
+        for way in ways
+        for one in _free(ranked(way, _plans(way, demonstrations, X_WO)), X_WO, most)
+    ]
+    if not found:
+        found = [one for way in ways for one in ranked(way, _led_around(way, demonstrations, X_WO))]
+    found.sort(key=_best_first)
     if len({one.margin for one in found}) < len(found):
         found.sort(key=lambda one: (-one.margin, -one.clearance, one.length))
     if not found:
-        outcomes = planner.all_outcomes(demonstrations, X_WO[None], q_start)[0]
-        solved = np.flatnonzero(outcomes.success)
-        poses = np.broadcast_to(X_WO, (len(solved), *X_WO.shape))
-        plans = planner.plans(demonstrations, poses, q_start, solved, outcomes.variant[solved])
-        led = [(demonstrations[d], plan) for d, plan in zip(solved.tolist(), plans, strict=True)]
-        found = ranked(led)
-    if not found:
         raise ScenarioError(
-            f"no demonstration gives a plan there: "
-            f"{why_not(outcomes, demonstrations, X_WO, q_start, planner)}",
+            f"no demonstration gives a plan there: {why_none(ways, demonstrations, X_WO)}",
             remedy="Choose another instance, or carry the run on with more demonstrations.",
         )
     return replace(found[0], alternatives=tuple(found[1:most]))
 
 
+def _best_first(one: RankedPlan) -> tuple[float, float]:
+    return -one.margin, one.length
+
+
+def _free(plans: Sequence[RankedPlan], X_WO: Array, most: int) -> list[RankedPlan]:
+    """So many plans at least, and all of the same margin, that touch nothing, the best first."""
+    candidates = sorted(plans, key=_best_first)
+    found: list[RankedPlan] = []
+    for first in range(0, len(candidates), CHECKED):
+        some = candidates[first : first + CHECKED]
+        poses = np.broadcast_to(X_WO, (len(some), *X_WO.shape))
+        touching = some[0].checker.first_collisions([c.plan for c in some], poses).collides
+        found += [c for c, touches in zip(some, touching, strict=True) if not touches]
+        following = candidates[first + CHECKED :]
+        if len(found) >= most and following and following[0].margin < found[-1].margin:
+            break
+    return found
+
+
+def _led_around(
+    way: Way, demonstrations: Sequence[Demonstration], X_WO: Array
+) -> list[tuple[Demonstration, Plan]]:
+    """Plans of the planner's own search, which leads the arm around what is in the way."""
+    outcomes = way.planner.all_outcomes(demonstrations, X_WO[None], way.q_start)[0]
+    solved = np.flatnonzero(outcomes.success)
+    poses = np.broadcast_to(X_WO, (len(solved), *X_WO.shape))
+    variant = outcomes.variant[solved]
+    plans = way.planner.plans(demonstrations, poses, way.q_start, solved, variant)
+    return [(demonstrations[d], plan) for d, plan in zip(solved.tolist(), plans, strict=True)]
+
+
 def _plans(
-    planner: BatchPlanner, demonstrations: Sequence[Demonstration], X_WO: Array, q_start: Array
+    way: Way, demonstrations: Sequence[Demonstration], X_WO: Array
 ) -> list[tuple[Demonstration, Plan]]:
     """All plans that keep the limits: of the arm's own start, or if there is none of all."""
+    planner, q_start = way.planner.planner, way.q_start
     for others in (False, True) if planner.others else (False,):
         outcomes = [
             planner.variant_outcomes(d, X_WO[None], q_start, others=others) for d in demonstrations

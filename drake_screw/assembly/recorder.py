@@ -37,7 +37,7 @@ from drake_screw.recordings.reading import holds_files
 from drake_screw.robot import Arm, RobotConfig
 from drake_screw.robot.model_file import ModelFile
 from drake_screw.robot.parts import add_robot
-from drake_screw.scenario.workcell_blocks import RecordedOnBlock
+from drake_screw.scenario.robot_blocks import RecordedOnBlock
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
 
@@ -75,6 +75,7 @@ class Recorder:
         robot: model of the robot that was led; None where `arm` is `own`.
         model: that was read of it; None likewise.
         base: name of the frame that object poses are seen from.
+        name: of the arm, where several may be led.
     """
 
     arm: Arm
@@ -83,6 +84,7 @@ class Recorder:
     robot: str | None = None
     model: ModelFile | None = None
     base: str = "robot.base"
+    name: str = ""
 
     @property
     def model_file(self) -> Path | None:
@@ -217,7 +219,7 @@ class Recorder:
     @property
     def understood_with(self) -> Robot:
         """What recordings in files from elsewhere are understood with."""
-        return Robot(self.arm, self.area, self.base, self.velocity_limits)
+        return Robot(self.arm, self.area, self.base, self.velocity_limits, self.name)
 
     @property
     def velocity_limits(self) -> Array:

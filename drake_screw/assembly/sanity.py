@@ -22,8 +22,13 @@ ASIDE = np.deg2rad(45.0)
 """From which on an end effector's z axis clearly does not point out of the hand."""
 
 
-def check_start(scenario: Scenario, workcell: Workcell) -> None:
+def check_start(scenario: Scenario, workcell: Workcell, place: str = "robot") -> None:
     """Check that the start configuration is strictly inside the joint limits.
+
+    Args:
+        scenario: says what it is.
+        workcell: has it.
+        place: of the arm's keys in the scenario.
 
     Raises:
         ScenarioError: it is not.
@@ -38,11 +43,11 @@ def check_start(scenario: Scenario, workcell: Workcell) -> None:
         within = f", a {key} of {kept:g} {unit} kept" if kept > 0.0 else ""
         inside = np.clip(start[i], *_a_little_inside(chain.lower[i], chain.upper[i], unit))
         raise ScenarioError(
-            f"robot.start: {name} starts at {start[i]:.4f} {unit}, {'on' if on else 'outside'} "
+            f"{place}.start: {name} starts at {start[i]:.4f} {unit}, {'on' if on else 'outside'} "
             f"its limits {chain.lower[i]:.4f} .. {chain.upper[i]:.4f} {unit}{within}",
             remedy=f"A plan needs room on both sides: start it a little inside, at {inside:.4g} "
-            f"{unit} say. If {name} is to stay where it is, leave it out of robot.joints and put "
-            "it in robot.parked; there it may be on its limit.",
+            f"{unit} say. If {name} is to stay where it is, leave it out of {place}.joints and "
+            "put it in robot.parked; there it may be on its limit.",
             file=scenario.source,
         )
 
@@ -129,11 +134,16 @@ def not_shown(workcell: Workcell) -> str | None:
     )
 
 
-def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
+def check_start_is_free(scenario: Scenario, workcell: Workcell, place: str = "robot") -> None:
     """Check that no obstacle touches the robot at the start, nor anything what the robot holds.
 
     Where collisions are looked at, by planning or by the simulated teacher, neither may the robot
     touch itself or the table there, since nothing could succeed, and a clearance has to be kept.
+
+    Args:
+        scenario: says what is looked at.
+        workcell: with all arms at their starts.
+        place: of the keys of the workcell's arm in the scenario.
 
     Raises:
         ScenarioError: something does.
@@ -142,6 +152,7 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     if not (workcell.obstacles or workcell.tool or scenario.planner.collision or taught):
         return
     pairs = touching_at_start(workcell)
+    start = "robot.start" if scenario.robot.arms is None else "the starts of robot.arms"
 
     def touching(name: str) -> list[str]:
         return [other for pair in pairs if name in pair for other in pair if other != name]
@@ -149,9 +160,9 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
     held = [] if workcell.tool is None else touching(workcell.name(workcell.tool.index()))
     if held:
         raise ScenarioError(
-            f"robot.tool.shape: the tool touches {_listed(held)} at the start",
+            f"{place}.tool.shape: the tool touches {_listed(held)} at the start",
             remedy=f"If it may, as the fingers around it, write touches: [{', '.join(held)}] in "
-            "robot.tool; otherwise make the shape smaller, move it, or change robot.start.",
+            f"{place}.tool; otherwise make the shape smaller, move it, or change {place}.start.",
             file=scenario.source,
         )
     for i, body in enumerate(workcell.obstacles):
@@ -160,15 +171,15 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
             raise ScenarioError(
                 f"obstacles.{i}: '{body.name()}' touches the robot's {_listed(links)} at the start",
                 remedy="Move the obstacle (xyz is in metres, seen from "
-                f"'{scenario.robot.base}'), or change robot.start.",
+                f"'{scenario.robot.base}'), or change {start}.",
                 file=scenario.source,
             )
     if pairs and (scenario.planner.collision or taught):
         follows = "plan" if scenario.planner.collision else "demonstration of a simulated teacher"
         both = " and ".join(f"'{a}' touches '{b}'" for a, b in pairs)
         raise ScenarioError(
-            f"robot.start: {both} at the start, so that no {follows} can succeed",
-            remedy="Change robot.start, or robot.parked (fingers may be put apart), or mend the "
+            f"{start}: {both} at the start, so that no {follows} can succeed",
+            remedy=f"Change {start}, or robot.parked (fingers may be put apart), or mend the "
             "collision shapes of the robot's model. Where they may touch, write "
             f"{remedy_for(pairs)} in robot"
             + (
@@ -185,7 +196,7 @@ def check_start_is_free(scenario: Scenario, workcell: Workcell) -> None:
         raise ScenarioError(
             f"planner.clearance: {both} are nearer than {kept:g} m at the start, so that no plan "
             "can succeed",
-            remedy="Choose a smaller clearance, or change robot.start or robot.parked; between "
+            remedy=f"Choose a smaller clearance, or change {start} or robot.parked; between "
             f"links that may come near, write {remedy_for(near)} in robot.",
             file=scenario.source,
         )
@@ -195,7 +206,7 @@ def _listed(names: list[str]) -> str:
     return " and ".join(f"'{name}'" for name in names)
 
 
-def looks_aside(workcell: Workcell) -> str | None:
+def looks_aside(workcell: Workcell, place: str = "robot") -> str | None:
     """What is to be said where the end effector's z axis clearly does not point out of the hand."""
     plant, arm = workcell.plant, workcell.arm
     context, inspector = plant.CreateDefaultContext(), workcell.scene_graph.model_inspector()
@@ -206,5 +217,5 @@ def looks_aside(workcell: Workcell) -> str | None:
         return None
     return (
         f"the z axis of '{arm.end_effector}' is {np.rad2deg(angle):.0f} degrees from what looks "
-        f"like out of the hand ({told_by}); robot.end_effector_rotation turns it"
+        f"like out of the hand ({told_by}); {place}.end_effector_rotation turns it"
     )

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.acquisition import AskingRule, Evaluator, Teacher, TreeEvaluator
 from drake_screw.acquisition.first import first_place
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
+from drake_screw.assembly.arms_recorder import AnyRecorder, ArmsRecorder
 from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.assembly.ranked_plans import RankedPlan, best_plan
 from drake_screw.assembly.recorder import Learning, Recorder
+from drake_screw.assembly.ways import ways
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
 from drake_screw.planning import Cause, Outcomes, Plan, Planner, connection
@@ -46,7 +47,7 @@ class Setup(PlanningSetup):
         scenario: the description.
         teacher: makes who gives demonstrations; an interactive teacher has to be passed in.
         strategy: makes the bandit of a grid.
-        planner: makes the planner that decides.
+        planner: makes the planner that decides; of several arms it is asked with `start`, of all.
         motion: what a simulated teacher shows.
         ask: chooses where the next demonstration is asked for.
 
@@ -81,25 +82,27 @@ class Setup(PlanningSetup):
         make = self._parts.get("planner")
         if make is not None:
             return make(self)
-        if self.scenario.planner.collision:
-            return self.careful_planner
-        return self.batch_planner
+        return self.planner_of_all(careful=self.scenario.planner.collision)
 
     def judged_plan(self, demonstration: Demonstration, X_WO: Array, outcome: Outcomes) -> Plan:
         """The plan that an outcome of `planner`, of shape (), is about.
 
-        Of a collision it is whole, as the joints would allow it. A planner that was passed in gives
-        its own plans if it has a method `plan` like that of `BatchPlanner`.
+        Of a collision it is whole, as the joints would allow it. A planner that was passed in for
+        the only arm gives its own plans if it has a method `plan` like that of `BatchPlanner`.
 
         Args:
             demonstration: that was planned with.
             X_WO: (k, 4, 4) the objects.
             outcome: what the planner found.
         """
-        planner = getattr(self.planner, "plan", self.batch_planner.plan)
-        if outcome.cause == Cause.COLLISION:
-            planner = self.batch_planner.plan
-        plan: Plan = planner(demonstration, X_WO, self.workcell.start, int(outcome.variant))
+        one = self.arm_of(outcome)
+        planner = one.batch_planner.plan
+        if outcome.cause != Cause.COLLISION:
+            if len(self.arms) == 1:
+                planner = getattr(self.planner, "plan", planner)
+            elif self.scenario.planner.collision and "planner" not in self.passed_in:
+                planner = one.careful_planner.plan
+        plan: Plan = planner(demonstration, X_WO, one.start, int(outcome.variant))
         return plan
 
     @property
@@ -185,8 +188,8 @@ class Setup(PlanningSetup):
     @cached_property
     def first(self) -> Array:
         """(k, c) where the first demonstration is asked for; NaN what is drawn at random."""
-        shoulder = self.workcell.arm.screw_chain().shoulder
-        return first_place(self.scenario.demonstrations.first, self.area, shoulder)
+        shoulders = [one.arm.screw_chain().shoulder for one in self.arms]
+        return first_place(self.scenario.demonstrations.first, self.area, shoulders)
 
     @cached_property
     def initial(self) -> int | tuple[Recording, ...]:
@@ -198,13 +201,14 @@ class Setup(PlanningSetup):
         return tuple(self.recorder.read(folder, format) for folder in block)
 
     @cached_property
-    def own_recorder(self) -> Recorder:
-        """Recordings of the arm that is planned for."""
+    def own_recorder(self) -> AnyRecorder:
+        """Recordings of the arms that are planned for."""
         base = self.scenario.robot.base
-        return Recorder(self.workcell.arm, self.workcell.arm, self.area, base=base)
+        each = [Recorder(o.arm, o.arm, self.area, base=base, name=o.name) for o in self.arms]
+        return each[0] if len(each) == 1 else ArmsRecorder(tuple(each))
 
     @cached_property
-    def recorder(self) -> Recorder:
+    def recorder(self) -> AnyRecorder:
         """Recordings that the scenario names: of another robot, if it says so.
 
         Raises:
@@ -215,7 +219,7 @@ class Setup(PlanningSetup):
             return self.own_recorder
         return Recorder.of_another(block, self.workcell.arm, self.area)
 
-    def recorder_of(self, robot: str | None) -> Recorder:
+    def recorder_of(self, robot: str | None) -> AnyRecorder:
         """That of a recording's `robot`."""
         return self.own_recorder if robot is None else self.recorder
 
@@ -243,39 +247,37 @@ class Setup(PlanningSetup):
             ValueError: instances of another shape, or not finite.
         """
         coordinates = self.area.complete(instances)
-        return self.planner.all_outcomes(
-            demonstrations, self.area.X_WO(coordinates), self.workcell.start
-        )
+        return self.planner.all_outcomes(demonstrations, self.area.X_WO(coordinates), self.start)
 
     def plan(
         self,
         demonstrations: Sequence[Demonstration],
         instance: InstanceLike,
         *,
-        start: ArrayLike | None = None,
+        start: ArrayLike | Mapping[str, ArrayLike] | None = None,
         most: int = 5,
     ) -> RankedPlan:
         """The best plan for a task instance: that with the largest margin which touches nothing.
 
+        Of several arms it is the best of all; `RankedPlan.arm_name` says of which.
+
         Args:
             demonstrations: to choose from.
             instance: {object: (x, y[, yaw, ...])}, or the numbers of all objects, as for `placed`.
-            start: (n,) rad or m, where the arm is; the scenario's start if None.
+            start: (n,) rad or m, where the arm is; the scenario's start if None. Of several arms
+                {name: (n,)}: that one moves, and the others rest where they start.
             most: plans to return, the best one and its alternatives.
 
         Raises:
             ScenarioError: the instance is not one, or there is no plan for it; it says why.
         """
         X_WO = self.area.X_WO(placed(self.area, instance))
-        q_start = self.workcell.start if start is None else np.asarray(start, dtype=float)
         names = [o.name for o in self.area.objects]
-        return best_plan(
-            self.careful_planner, self.workcell.arm, demonstrations, X_WO, q_start, names, most
-        )
+        return best_plan(ways(self.arms, start), demonstrations, X_WO, names, most)
 
     def evaluator(self, progress: Progress | None = None) -> Evaluator | TreeEvaluator:
         """What carries out the rounds of the scenario; `progress` is called with every batch."""
-        start, seed = self.workcell.start, self.scenario.seed
+        start, seed = self.start, self.scenario.seed
         if self.tree is not None:
             return TreeEvaluator(self.planner, self.area, start, self.tree, seed, progress)
         return Evaluator(self.planner, self.regions, start, self.strategy, seed, progress)

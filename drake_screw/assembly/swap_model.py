@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from drake_screw.robot import RobotConfig
 from drake_screw.robot.names import scoped
 from drake_screw.robot.parts import add_robot
 from drake_screw.robot.xacro_text import SUFFIX
+from drake_screw.scenario.robot_blocks import ToolBlock
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
 
@@ -39,13 +40,15 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     parser = Parser(plant)
     xacro = block.xacro if place.endswith(SUFFIX) else {}
     block = block.model_copy(update={"xacro": xacro})
-    config = RobotConfig(block.model, block.joints, block.end_effector, (), block.base)
+    joints = tuple(name for arm in block.each_arm for name in arm.joints)
+    first = block.each_arm[0]
+    config = RobotConfig(place, first.joints, first.end_effector, (), block.base)
     robot_models = add_robot(parser, replace(config, packages=block.packages, xacro=xacro)).models
     names = _names(plant.get_joint(i) for i in plant.GetJointIndices())
     other = scenario.recorded_on
-    if other is not None and set(other.joints) <= names and not set(block.joints) <= names:
+    if other is not None and set(other.joints) <= names and not set(joints) <= names:
         raise ModelError(
-            f"no joint '{next(name for name in block.joints if name not in names)}' in this model; "
+            f"no joint '{next(name for name in joints if name not in names)}' in this model; "
             "it has the joints of the robot that recordings were made on",
             remedy=f"Change that robot's model with: --set recorded_on.model={model}",
             file=model,
@@ -54,15 +57,24 @@ def swap_model(scenario: Scenario, model: PathLike) -> Scenario:
     links = _names(plant.get_body(i) for model in robot_models for i in plant.GetBodyIndices(model))
     known = {"table", *links, *(o.name for o in scenario.objects)}
     known |= {o.name for o in scenario.obstacles}
-    if block.tool is not None and block.tool.shape is not None:
-        known.add("tool")
+    for arm in block.each_arm:
+        if arm.tool is not None and arm.tool.shape is not None:
+            known.add("tool" if block.arms is None else f"{arm.name}_tool")
     ignored = tuple(pair for pair in block.ignore_collisions if known.issuperset(pair))
     robot = block.model_copy(update={"parked": parked, "ignore_collisions": ignored})
-    if block.tool is not None:
-        touches = tuple(name for name in block.tool.touches if name in known)
-        tool = block.tool.model_copy(update={"touches": touches})
-        robot = robot.model_copy(update={"tool": tool})
+    if block.arms is not None:
+        arms = tuple(arm.model_copy(update={"tool": _kept(arm.tool, known)}) for arm in block.arms)
+        robot = robot.model_copy(update={"arms": arms})
+    else:
+        robot = robot.model_copy(update={"tool": _kept(block.tool, known)})
     return scenario.model_copy(update={"robot": robot})
+
+
+def _kept(tool: ToolBlock | None, known: Container[str]) -> ToolBlock | None:
+    """A tool, with what it may touch as far as that is known."""
+    if tool is None:
+        return None
+    return tool.model_copy(update={"touches": tuple(n for n in tool.touches if n in known)})
 
 
 def _names(parts: Iterable[Joint | RigidBody]) -> set[str]:

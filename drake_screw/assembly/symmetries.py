@@ -6,13 +6,14 @@ from pydrake.math import RollPitchYaw
 
 from drake_screw.planning import Symmetries
 from drake_screw.robot import Arm
+from drake_screw.scenario.robot_blocks import ToolBlock
 from drake_screw.scenario.schema import Scenario
 from drake_screw.screws import pose
 from drake_screw.tasks import Symmetry
 
 
-def symmetries(scenario: Scenario, arm: Arm) -> Symmetries:
-    """Of the objects, and of what the end effector holds.
+def symmetries(scenario: Scenario, arm: Arm, tool: ToolBlock | None) -> Symmetries:
+    """Of the objects, and of the tool that an arm's end effector holds.
 
     Raises:
         ModelError: the tool's frame is not one that the end effector carries.
@@ -20,7 +21,7 @@ def symmetries(scenario: Scenario, arm: Arm) -> Symmetries:
     objects: list[Symmetry | None] = [
         None if o.symmetry is None else o.symmetry.symmetry for o in scenario.objects
     ]
-    tool, tried, chain = scenario.robot.tool, scenario.planner.turns, arm.screw_chain()
+    tried, chain = scenario.planner.turns, arm.screw_chain()
     if tool is None:
         return Symmetries.of(chain, objects, tried=tried)
     rotation = RollPitchYaw(tool.rpy).ToRotationMatrix().matrix()

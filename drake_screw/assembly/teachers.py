@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from drake_screw.acquisition import RecordedTeacher, Teacher
+from drake_screw.acquisition.nearest_arm import NearestArm
 from drake_screw.acquisition.simulated import SimulatedTeacher
 from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.tried_recordings import TriedRecordings
@@ -10,9 +13,16 @@ from drake_screw.errors import ScenarioError
 
 
 def simulated(setup: Setup) -> Teacher:
-    """A teacher who leads the arm as people do, and shows the scenario's motion."""
-    free_axis = setup.scenario.planner.roll_axis
-    return SimulatedTeacher(setup.workcell, setup.area, setup.motion, free_axis)
+    """A teacher who leads the arm as people do, and shows the scenario's motion.
+
+    Of several arms that is the one nearest to the object, or else the next nearest.
+    """
+    free_axis, arms = setup.scenario.planner.roll_axis, setup.arms
+    each = [SimulatedTeacher(one.workcell, setup.area, setup.motion, free_axis) for one in arms]
+    if len(each) == 1:
+        return each[0]
+    shoulders = np.stack([one.arm.screw_chain().shoulder for one in arms])
+    return NearestArm(tuple(one.name for one in arms), each, shoulders, setup.area)
 
 
 def recorded(setup: Setup) -> Teacher:
@@ -23,7 +33,7 @@ def recorded(setup: Setup) -> Teacher:
     """
     block, recorder = setup.scenario.teacher, setup.recorder
     assert block.folder is not None
-    tried = TriedRecordings(recorder, setup.learning, setup.planner, setup.workcell.start)
+    tried = TriedRecordings(recorder, setup.learning, setup.planner, setup.start)
     return RecordedTeacher(
         recorder.library(block.folder, block.format),
         setup.regions,

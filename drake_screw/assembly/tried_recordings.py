@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from drake_screw.assembly.recorder import Learning, Recorder
+from drake_screw.assembly.arms_recorder import AnyRecorder
+from drake_screw.assembly.recorder import Learning
 from drake_screw.demonstrations import Demonstration, NoMotionKept, Recording
 from drake_screw.planning import Planner
 from drake_screw.typing import Array
@@ -23,10 +24,10 @@ class TriedRecordings:
         recorder: of the robot they were made on.
         learning: how they become demonstrations.
         planner: of the arm that is planned for.
-        start: (n,) rad or m, where its plans start.
+        start: (n,) rad or m, where its plans start; of several arms one after the other.
     """
 
-    recorder: Recorder
+    recorder: AnyRecorder
     learning: Learning
     planner: Planner
     start: Array

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -41,20 +42,23 @@ class Covered:
         )
 
 
-def check_reach(scenario: Scenario, arm: Arm, area: WorkArea) -> None:
-    """Check that some of the work area can be reached.
+def check_reach(scenario: Scenario, arms: Sequence[Arm], area: WorkArea) -> None:
+    """Check that some of the work area can be reached by one of the arms.
 
     Raises:
         ScenarioError: none of an object's can.
     """
-    chain = arm.screw_chain()
-    nearest = nearest_places(area, chain.shoulder)
+    chains = [arm.screw_chain() for arm in arms]
+    away = np.stack(
+        [np.linalg.norm(nearest_places(area, c.shoulder) - c.shoulder, axis=-1) for c in chains]
+    )
     for i, item in enumerate(area.objects):
-        away = float(np.linalg.norm(nearest[i] - chain.shoulder))
-        if away > chain.reach + TOOL:
+        nearest = int((away[:, i] - [chain.reach for chain in chains]).argmin())
+        chain = chains[nearest]
+        if away[nearest, i] > chain.reach + TOOL:
             raise ScenarioError(
                 f"objects.{i}: the work area of '{item.name}' is out of reach: its nearest "
-                f"point is {away:.2f} m from the shoulder, the end effector gets "
+                f"point is {away[nearest, i]:.2f} m from the shoulder, the end effector gets "
                 f"{chain.reach:.2f} m",
                 remedy="Move the work area towards the robot; x, y and z are in metres, "
                 f"seen from '{scenario.robot.base}'.",

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from pydrake.math import RollPitchYaw
+
+from drake_screw.planning.symmetry import TOOL
 from drake_screw.robot import (
     BoxShape,
     CylinderShape,
@@ -25,42 +28,77 @@ from drake_screw.scenario.shape_blocks import ShapeBlock
 from drake_screw.tasks import ObjectArea, WorkArea
 
 
-def robot_config(scenario: Scenario) -> RobotConfig:
-    """Which arm of which model, and what it holds.
+def robot_configs(scenario: Scenario) -> tuple[RobotConfig, ...]:
+    """Which arms of which model, and what they hold; for each arm the others rest.
 
     Raises:
-        ModelError: it starts in a state of an SRDF file that does not have it.
+        ModelError: one starts in a state of an SRDF file that does not have it.
     """
-    block = scenario.robot
-    start = block.start
+    block, arms = scenario.robot, scenario.robot.each_arm
+    alone = [_robot_config(scenario, number) for number in range(len(arms))]
+    starts = [dict(zip(one.joints, one.start, strict=False)) for one in alone]
+    found = []
+    for number, robot in enumerate(alone):
+        others = [other for other in range(len(arms)) if other != number]
+        parked = dict(block.parked)
+        for other in others:
+            parked |= starts[other]
+        held = (_tool_config(scenario, other, turned=False) for other in others)
+        found.append(
+            replace(robot, parked=parked, others_hold=tuple(t for t in held if t is not None))
+        )
+    return tuple(found)
+
+
+def _robot_config(scenario: Scenario, number: int) -> RobotConfig:
+    """One arm, as if it were alone."""
+    block, arm = scenario.robot, scenario.robot.each_arm[number]
     robot = RobotConfig(
         str(block.model),
-        block.joints,
-        block.end_effector,
-        () if isinstance(start, str) else start,
+        arm.joints,
+        arm.end_effector,
+        () if isinstance(arm.start, str) else arm.start,
         block.base,
         block.parked,
-        tool_config(scenario),
-        velocity_limits=block.velocity_limits,
+        _tool_config(scenario, number),
+        velocity_limits={k: v for k, v in block.velocity_limits.items() if k in arm.joints},
         ignore_collisions=block.ignore_collisions,
-        end_effector_rotation=block.end_effector_rotation,
+        end_effector_rotation=arm.end_effector_rotation,
         packages=block.packages,
         xacro=block.xacro,
         srdf=block.srdf,
     )
+    start = arm.start
     return replace(robot, start=start_state(robot, start)) if isinstance(start, str) else robot
 
 
-def tool_config(scenario: Scenario) -> ToolConfig | None:
-    """What the end effector holds, if that has a shape."""
-    block = scenario.robot.tool
+def _tool_config(scenario: Scenario, number: int, *, turned: bool = True) -> ToolConfig | None:
+    """What the end effector of an arm holds, if that has a shape.
+
+    Args:
+        scenario: says it.
+        number: of the arm.
+        turned: whether the plant has the end effector's frame as it is turned; the tool's pose is
+            given in the frame before that otherwise.
+    """
+    robot, arm = scenario.robot, scenario.robot.each_arm[number]
+    block = arm.tool
     if block is None or block.shape is None:
         return None
-    robot = scenario.robot
-    turned = robot.end_effector_rotation is not None
-    own = turned_frame(robot.end_effector) if turned else robot.end_effector
-    frame = block.frame or own
-    return ToolConfig(frame, placed_shape(block.shape), block.xyz, block.rpy, block.touches)
+    name = TOOL if robot.arms is None else f"{arm.name}_{TOOL}"
+    place = f"{robot.place(number)}.tool"
+    frame, xyz, rpy = block.frame, block.xyz, block.rpy
+    if arm.end_effector_rotation is not None and frame in (None, turned_frame(arm.end_effector)):
+        frame = turned_frame(arm.end_effector)
+        if not turned:
+            R_NE = RollPitchYaw(arm.end_effector_rotation).ToRotationMatrix()
+            x, y, z = R_NE.matrix() @ xyz
+            frame, xyz = arm.end_effector, (float(x), float(y), float(z))
+            R_NT = R_NE.multiply(RollPitchYaw(rpy).ToRotationMatrix())
+            roll, pitch, yaw = RollPitchYaw(R_NT).vector()
+            rpy = float(roll), float(pitch), float(yaw)
+    shape = placed_shape(block.shape)
+    return ToolConfig(frame or arm.end_effector, shape, xyz, rpy, block.touches, name, place)
 
 
 def table_config(scenario: Scenario) -> TableConfig | None:

@@ -90,7 +90,7 @@ def run(
         )
         pages.open(job.setup)
         if loaded.teacher.kind == "simulated" and not quiet:
-            for line in job.setup.workcell.arm.assumptions:
+            for line in job.setup.assumptions:
                 out.say(f"note: {line}")
         try:
             with RunConsole(out.console, job.setup.regions, quiet=quiet) as shown:

@@ -27,6 +27,10 @@ STILL = 2e-3  # rad
 MOST = 0.9  # of the samples within the limits; with fewer it is not single samples that are wrong
 
 
+class ArmAtRest(RecordingError):
+    """A recording in which the arm does not move."""
+
+
 @dataclass(frozen=True)
 class Recording:
     """Joint angles over time, with the object poses at that time.
@@ -167,7 +171,7 @@ def checked(
     first = int(np.argmax(left)) - 1
     last = len(t) - int(np.argmin(stays[::-1]))
     if not left.any() or stays.all() or first >= last:
-        raise RecordingError(
+        raise ArmAtRest(
             f"the arm does not move: no joint by much more than {STILL * 1e3:.0f} mrad (mm)",
             remedy="Record again while leading the arm.",
             file=file,

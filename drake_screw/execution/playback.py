@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from pydrake.geometry import Meshcat, MeshcatAnimation, MeshcatParams, Rgba
 
 from drake_screw.execution.simulate import Execution
-from drake_screw.execution.station import build_station
+from drake_screw.execution.station import Station, build_station
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.typing import Array
 
@@ -20,8 +20,7 @@ GOOD, BAD = Rgba(0.12, 0.47, 0.71, 1.0), Rgba(0.84, 0.15, 0.16, 1.0)
 
 
 def recording_html(
-    executions: Sequence[tuple[Execution, ArrayLike]],
-    robot: RobotConfig,
+    executions: Sequence[tuple[Execution, ArrayLike, RobotConfig]],
     *,
     table: TableConfig | None = None,
     objects: Sequence[ObjectConfig] = (),
@@ -32,22 +31,27 @@ def recording_html(
     The line is the end effector's path: blue where the execution was flawless, red otherwise.
 
     Args:
-        executions: each with the poses X_WO (k, 4, 4) of the objects.
-        robot, table, objects, obstacles: as the executions had them.
+        executions: each with the poses X_WO (k, 4, 4) of the objects, and the robot with the arm
+            that moved: all of one model.
+        table, objects, obstacles: as the executions had them.
     """
     meshcat = Meshcat(MeshcatParams(host="localhost"))
-    station = build_station(
-        robot, table=table, objects=objects, obstacles=obstacles, meshcat=meshcat
-    )
+    stations: dict[tuple[str, ...], Station] = {}
+    for _, _, robot in executions:
+        if robot.joints not in stations:
+            stations[robot.joints] = build_station(
+                robot, table=table, objects=objects, obstacles=obstacles, meshcat=meshcat
+            )
     for path in ("/Grid", "/Axes"):
         meshcat.SetProperty(path, "visible", False)
     meshcat.SetProperty("/Background", "top_color", SKY[0])
     meshcat.SetProperty("/Background", "bottom_color", SKY[1])
-    _aim(meshcat, [np.asarray(X_WO, dtype=float) for _, X_WO in executions])
+    _aim(meshcat, [np.asarray(X_WO, dtype=float) for _, X_WO, _ in executions])
     meshcat.StartRecording(frames_per_second=FRAMES, set_visualizations_while_recording=False)
     animation = meshcat.get_mutable_recording()
     began = 0.0
-    for number, (execution, X_WO) in enumerate(executions):
+    for number, (execution, X_WO, robot) in enumerate(executions):
+        station = stations[robot.joints]
         path = f"/paths/{number + 1:02d}"
         _trace(
             meshcat,

@@ -37,7 +37,6 @@ from drake_screw.execution.wiring import drive, measured_state, resting
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.robot.ignored import let_links_touch
 from drake_screw.robot.parts import add_robot, add_surroundings
-from drake_screw.robot.tool import let_touch
 from drake_screw.typing import Array
 
 Follower = ScrewPlanExecutor | JointPathSource
@@ -129,8 +128,7 @@ def build_station(
         plant.set_gravity_enabled(model, False)
     plant.Finalize()
     _ignore_contacts_of_objects(plant, scene_graph, added.instances)
-    if robot.tool is not None and added.tool is not None:
-        let_touch(plant, scene_graph, added.tool, robot.tool.touches)
+    added.let_tools_touch(scene_graph)
     let_links_touch(plant, scene_graph, added.models, robot)
     arm = _kinematics(robot)
     follower = builder.AddNamedSystem(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -28,6 +29,7 @@ class Trial:
         reason: why there is no plan; empty if there is one.
         turned: rad, by which symmetric objects are turned in the plan, by their names.
         execution: what was done; None without a plan.
+        arm: the name of the arm that moved; empty where the robot has no other, or without a plan.
     """
 
     region: int
@@ -36,6 +38,7 @@ class Trial:
     reason: str
     execution: Execution | None
     turned: tuple[tuple[str, float], ...] = ()
+    arm: str = ""
 
     @property
     def report(self) -> ExecutionReport | None:
@@ -47,13 +50,16 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
     """A row for each trial; lengths in m (mm where the name says so), angles in rad (mrad).
 
     Lists in a cell are separated by semicolons: deviations from the screws have an entry for each
-    segment, contacts name both bodies.
+    segment, contacts name both bodies. Where the robot has several arms, one of the columns says
+    which of them moved.
     """
     places = [f"{area.objects[i].name}_{area.axes[j]}" for i, j in area.columns]
+    several = any(trial.arm for trial in trials)
     header = [
         "region",
         *places,
         "demonstration",
+        *(["arm"] if several else []),
         "turned_rad",
         "status",
         "segment",
@@ -73,7 +79,8 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
             said = [report.status.phase.value, segment, report.status.reason]
             said += [measure(report) for measure in _MEASURES.values()]
         turned = ";".join(f"{body} {angle:.4f}" for body, angle in trial.turned)
-        rows.writerow([trial.region, *place, trial.demonstration, turned, *said])
+        planned = [trial.demonstration, *([trial.arm] if several else []), turned]
+        rows.writerow([trial.region, *place, *planned, *said])
     return file.getvalue()
 
 
@@ -143,6 +150,7 @@ class TrialSummary:
         flawless: how many of those besides kept all limits and touched nothing.
         outside_limits, over_velocity, with_contact: how many had such a flaw.
         worst: of all that were executed; None if none was.
+        arms: how many executions each of several arms moved in, by its name; {} of a single one.
         without_plan: why there is none.
         flawed: what went wrong.
     """
@@ -155,11 +163,14 @@ class TrialSummary:
     over_velocity: int
     with_contact: int
     worst: Measures | None
+    arms: Mapping[str, int]
     without_plan: tuple[Remark, ...]
     flawed: tuple[Remark, ...]
 
     def __str__(self) -> str:
-        lines = [f"{counted(self.instances, 'instance')}, {self.executed} executed"]
+        by = ", ".join(f"{count} by arm {name}" for name, count in self.arms.items())
+        each = f": {by}" if by else ""
+        lines = [f"{counted(self.instances, 'instance')}, {self.executed} executed{each}"]
         lines += [f"  {remark}" for remark in self.without_plan]
         if self.worst is not None:
             least, most, mean = self.worst.time
@@ -201,6 +212,7 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
         over_velocity=sum(report.velocity > 1.0 for report in reports),
         with_contact=sum(bool(report.contacts) for report in reports),
         worst=_measures(reports) if reports else None,
+        arms=dict(sorted(Counter(trial.arm for trial in trials if trial.arm).items())),
         without_plan=without,
         flawed=flawed,
     )

@@ -14,7 +14,7 @@ from drake_screw.planning.batch import BatchPlanner
 from drake_screw.planning.connected import ahead, led_around, tried_first
 from drake_screw.planning.outcomes import Cause, Outcomes, Plan, one_outcome
 from drake_screw.planning.plan_checker import PlanChecker
-from drake_screw.robot import Workcell
+from drake_screw.robot import ScrewChain, Workcell
 from drake_screw.typing import Array
 
 LONG = 10  # ways around that are announced before they are sought
@@ -46,6 +46,11 @@ class CollisionFreePlanner:
         self.connects = bool(planner.others) and connection.available()
         if planner.others and not self.connects:
             connection.warn_of_its_absence()
+
+    @property
+    def chain(self) -> ScrewChain:
+        """The arm."""
+        return self.planner.chain
 
     @property
     def evaluations(self) -> int:

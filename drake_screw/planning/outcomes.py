@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from typing import Any
 
@@ -38,6 +38,8 @@ class Outcomes:
             one that came furthest.
         pair: which pair of bodies touches, an index of `Workcell.pairs`; -1 where none does, or
             where it is not known.
+        arm: which arm it is of, in the order in which they are tried, from 0. Of a failure it is
+            the one that came furthest; joints are counted along it.
     """
 
     cause: NDArray[np.uint8]
@@ -46,11 +48,14 @@ class Outcomes:
     fraction: NDArray[np.float32]
     variant: NDArray[np.int16]
     pair: NDArray[np.int16] = field(default=None)  # type: ignore[arg-type]
+    arm: NDArray[np.int8] = field(default=None)  # type: ignore[arg-type]
 
     def __post_init__(self) -> None:
-        """Without pairs, none is known."""
+        """Without pairs, none is known; without arms, all are of the first."""
         if self.pair is None:
             object.__setattr__(self, "pair", np.full(self.cause.shape, -1, dtype=np.int16))
+        if self.arm is None:
+            object.__setattr__(self, "arm", np.zeros(self.cause.shape, dtype=np.int8))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -106,7 +111,12 @@ class Outcomes:
             change(self.fraction),
             change(self.variant),
             change(self.pair),
+            change(self.arm),
         )
+
+    def of_arm(self, arm: int) -> Outcomes:
+        """The same outcomes, of the arm with that number."""
+        return replace(self, arm=np.full(self.shape, arm, dtype=np.int8))
 
     @property
     def furthest_segment(self) -> NDArray[np.int64]:
@@ -127,6 +137,7 @@ class Outcomes:
         changed.fraction[where] = values.fraction
         changed.variant[where] = values.variant
         changed.pair[where] = values.pair
+        changed.arm[where] = values.arm
         return changed
 
     def __getitem__(self, index: Any) -> Outcomes:
@@ -158,6 +169,7 @@ def concatenate(parts: Iterable[Outcomes], axis: int = 0) -> Outcomes:
         np.concatenate([p.fraction for p in parts], axis=axis),
         np.concatenate([p.variant for p in parts], axis=axis),
         np.concatenate([p.pair for p in parts], axis=axis),
+        np.concatenate([p.arm for p in parts], axis=axis),
     )
 
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from drake_screw.demonstrations.library import OBJECTS, is_recording
 from drake_screw.errors import RecordingError
 from drake_screw.plugins import choices, find, is_known
 from drake_screw.recordings.mapping import FILE, Mapping, read_mapping
+from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.text_formats import is_rostopic
-from drake_screw.recordings.understanding import Robot, Understood, episodes_of, understand
+from drake_screw.recordings.understanding import episodes_of, understand
+from drake_screw.recordings.understood import Robot, Understood
+from drake_screw.recordings.which_arm import moving_arm, said_of_choice
 from drake_screw.tables.text import Progress
 from drake_screw.typing import PathLike
 
@@ -40,7 +43,7 @@ FOLDERS = ("lerobot",)
 
 def read_recordings(
     source: PathLike,
-    robot: Robot,
+    robot: Robot | Sequence[Robot],
     mapping: Mapping | None = None,
     *,
     objects_needed: bool = True,
@@ -48,9 +51,12 @@ def read_recordings(
 ) -> tuple[Understood, ...]:
     """All recordings of a source, each with how it was understood.
 
+    Of several arms that may have been led, each file, or part of one that stands for itself, is of
+    the one whose joints it has, and that moves most.
+
     Args:
         source: a file, or a folder of files that each hold one or more.
-        robot: that they were made on.
+        robot: that they were made on; or one for each arm that may have been led.
         mapping: what is said of them, before what recording.yaml beside each says.
         objects_needed: whether it is an error if it is not said where an object was.
         progress: makes what is told how much of a file has been read.
@@ -60,6 +66,7 @@ def read_recordings(
         PluginError: no such format.
     """
     source, mapping = Path(source), mapping or Mapping()
+    robots = (robot,) if isinstance(robot, Robot) else tuple(robot)
     found: list[Understood] = []
     for file in _files(source, whole=mapping.format in FOLDERS):
         said = _beside(file, mapping)
@@ -68,13 +75,7 @@ def read_recordings(
             raise RecordingError(f"no format '{format}'", remedy=choices("sources", format))
         raws = list(find("sources", format)(file, said, progress(file) if progress else None))
         while raws:  # one at a time, so that a long one is let go of when it is understood
-            parts = list(episodes_of(raws.pop(0), said, robot))
-            while parts:
-                found.append(
-                    understand(
-                        parts.pop(0), said, robot, format=format, objects_needed=objects_needed
-                    )
-                )
+            found += _understood(raws.pop(0), said, robots, format, objects_needed)
     for name, count in Counter(each.name for each in found).items():
         if count > 1:
             raise RecordingError(
@@ -83,6 +84,40 @@ def read_recordings(
                 file=source,
             )
     return tuple(found)
+
+
+def _understood(
+    raw: Raw, said: Mapping, robots: Sequence[Robot], format: str, objects_needed: bool
+) -> list[Understood]:
+    """The recordings in some columns, of the arm that they are of."""
+    if len(robots) == 1:
+        return _by_one(raw, said, robots[0], format, objects_needed)
+    tried: list[list[Understood] | RecordingError] = []
+    for robot in robots:
+        try:
+            tried.append(_by_one(raw, said, robot, format, objects_needed))
+        except RecordingError as error:
+            tried.append(error)
+    travels = [
+        one if isinstance(one, RecordingError) else max((u.travel for u in one), default=0.0)
+        for one in tried
+    ]
+    names = [robot.name for robot in robots]
+    found, note = tried[moving_arm(travels, names)], said_of_choice(travels, names)
+    assert not isinstance(found, RecordingError)
+    return found if note is None else [each.noting(note) for each in found]
+
+
+def _by_one(
+    raw: Raw, said: Mapping, robot: Robot, format: str, objects_needed: bool
+) -> list[Understood]:
+    """The recordings in some columns of one arm."""
+    parts, found = list(episodes_of(raw, said, robot)), []
+    del raw
+    while parts:
+        part = parts.pop(0)
+        found.append(understand(part, said, robot, format=format, objects_needed=objects_needed))
+    return found
 
 
 def holds_files(source: Path) -> bool:

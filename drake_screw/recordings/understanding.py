@@ -23,54 +23,16 @@ from drake_screw.recordings.object_places import hand_from_base, objects_of
 from drake_screw.recordings.places import FORMS
 from drake_screw.recordings.raw import Raw
 from drake_screw.recordings.time_column import Time, gaps_in_words, rate_in_words, time_of
+from drake_screw.recordings.understood import Robot, Understood
+from drake_screw.recordings.which_arm import travel
 from drake_screw.robot import Arm
 from drake_screw.screws.endless import TURN
 from drake_screw.tables import Table
-from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
 
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 MOST = 0.99
 """Part of the samples that have to be within the limits for a unit to be that of the angles."""
-
-
-@dataclass(frozen=True)
-class Robot:
-    """What a recording is understood with.
-
-    Attributes:
-        arm: that was led.
-        area: the objects, and where they may be.
-        base: name of the frame that poses are seen from.
-        velocity_limits: (n,) rad/s or m/s.
-    """
-
-    arm: Arm
-    area: WorkArea
-    base: str
-    velocity_limits: Array
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the objects."""
-        return tuple(item.name for item in self.area.objects)
-
-
-@dataclass(frozen=True, eq=False)
-class Understood:
-    """A recording, and how its file was understood.
-
-    Attributes:
-        recording: ready for use; None where the objects' places are not said yet.
-        name: its name.
-        facts: what was understood, in pairs of words.
-        mapping: that says all of it.
-    """
-
-    recording: Recording | None
-    name: str
-    facts: tuple[tuple[str, str], ...]
-    mapping: Mapping
 
 
 def understand(
@@ -130,7 +92,8 @@ def understand(
         *(("object", line) for line in placed.said),
         *(("note", note) for note in found.notes),
     )
-    return Understood(None if placed.missing else found, name, facts, said)
+    kept = None if placed.missing else found
+    return Understood(kept, name, facts, said, travel(found.q))
 
 
 @dataclass(frozen=True, eq=False)

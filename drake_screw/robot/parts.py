@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from pydrake.geometry import Box, Cylinder
+from pydrake.geometry import Box, Cylinder, SceneGraph
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
@@ -26,7 +26,7 @@ from drake_screw.robot.names import check_apart, find_frame
 from drake_screw.robot.obstacles import ObstacleConfig, add_obstacle
 from drake_screw.robot.packages import ModelPlace
 from drake_screw.robot.shapes import register
-from drake_screw.robot.tool import ToolConfig, add_tool
+from drake_screw.robot.tool import ToolConfig, add_tool, let_touch
 
 WOOD = np.array([0.76, 0.68, 0.56, 1.0])
 CLAY = np.array([0.93, 0.93, 0.90, 1.0])
@@ -37,7 +37,11 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class RobotConfig:
-    """Which arm of which model, how it starts, and what it holds."""
+    """Which arm of which model, how it starts, and what it holds.
+
+    Of a robot with several arms that are planned for, the others are parked where they rest, with
+    what they hold.
+    """
 
     model: str
     joints: tuple[str, ...]
@@ -52,6 +56,13 @@ class RobotConfig:
     packages: Mapping[str, Path] = field(default_factory=dict)
     xacro: Mapping[str, object] = field(default_factory=dict)
     srdf: str | None = None
+    others_hold: tuple[ToolConfig, ...] = ()
+
+    @property
+    def tools(self) -> tuple[ToolConfig, ...]:
+        """What all arms hold, by name: in the same order whichever of them is planned for."""
+        held = () if self.tool is None else (self.tool,)
+        return tuple(sorted((*held, *self.others_hold), key=lambda tool: tool.name))
 
     @property
     def frame(self) -> str:
@@ -95,6 +106,7 @@ class RobotInPlant(NamedTuple):
         instances: those that are the robot. A model without joints that stands by itself, a table
             that directives add beside an arm, is none of it.
         tool: the body of what it holds, if that has a shape.
+        tools: of what all its arms hold, as its configuration has them.
         held: names of its joints that were replaced by welds.
         mimics: which of its joints follow another one.
     """
@@ -105,8 +117,18 @@ class RobotInPlant(NamedTuple):
     models: tuple[ModelInstanceIndex, ...]
     instances: tuple[ModelInstanceIndex, ...]
     tool: RigidBody | None
+    tools: tuple[RigidBody, ...]
     held: tuple[str, ...]
     mimics: tuple[Mimic, ...]
+
+    def let_tools_touch(self, scene_graph: SceneGraph) -> None:
+        """Let what is held touch what it may, once the plant is finalized.
+
+        Raises:
+            ModelError: there is no such body, or more than one.
+        """
+        for body, tool in zip(self.tools, self.config.tools, strict=True):
+            let_touch(self.plant, scene_graph, body, tool)
 
     def arm(self) -> Arm:
         """The arm, once the plant is finalized.
@@ -155,8 +177,9 @@ def add_robot(parser: Parser, robot: RobotConfig) -> RobotInPlant:
             _turn_end_effector(plant, models, robot)
     except ModelError as error:
         raise ModelError(error.message, remedy=error.remedy, file=error.file or file) from error
-    tool = None if robot.tool is None else add_tool(plant, models, robot.tool)
-    return RobotInPlant(robot, plant, model, models, instances, tool, held, mimics)
+    tools = tuple(add_tool(plant, models, tool) for tool in robot.tools)
+    tool = None if robot.tool is None else tools[robot.tools.index(robot.tool)]
+    return RobotInPlant(robot, plant, model, models, instances, tool, tools, held, mimics)
 
 
 def _read(parser: Parser, model: ModelFile) -> tuple[ModelInstanceIndex, ...]:

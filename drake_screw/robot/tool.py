@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import count
 
@@ -29,6 +28,8 @@ class ToolConfig:
         xyz: p_FT in m.
         rpy: roll, pitch and yaw of T in that frame, rad.
         touches: names of links, of the table, of obstacles and objects that it may touch.
+        name: of its body.
+        place: of its block in a scenario, for messages.
     """
 
     frame: str
@@ -36,6 +37,8 @@ class ToolConfig:
     xyz: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
     touches: tuple[str, ...] = ()
+    name: str = "tool"
+    place: str = "robot.tool"
 
     @property
     def X_FT(self) -> RigidTransform:
@@ -46,7 +49,7 @@ class ToolConfig:
 def add_tool(plant: MultibodyPlant, robot: Instances, tool: ToolConfig) -> RigidBody:
     """Add a tool to a robot's model as a body without mass, with a visual and a collision shape.
 
-    It belongs to the model that has the frame. Its name is "tool", or the like where the robot has
+    It belongs to the model that has the frame. Its name is its own, or the like where the robot has
     something of that name. Drake lets it touch the links that are rigidly fixed to it.
 
     Raises:
@@ -56,10 +59,10 @@ def add_tool(plant: MultibodyPlant, robot: Instances, tool: ToolConfig) -> Rigid
     try:
         shape = tool.shape.drake()
     except ModelError as error:
-        message = f"robot.tool.shape: {error.message}"
+        message = f"{tool.place}.shape: {error.message}"
         raise ModelError(message, remedy=error.remedy, file=error.file) from error
     taken = {plant.get_frame(FrameIndex(i)).name() for i in range(plant.num_frames())}
-    free = (name for n in count(2) for name in ("tool", f"tool_{n}") if name not in taken)
+    free = (name for n in count(2) for name in (tool.name, f"{tool.name}_{n}") if name not in taken)
     body = plant.AddRigidBody(next(free), frame.model_instance(), SpatialInertia.Zero())
     plant.WeldFrames(frame, body.body_frame(), tool.X_FT)
     register(plant, body, shape, tool.shape.X_FG, STEEL)
@@ -67,20 +70,20 @@ def add_tool(plant: MultibodyPlant, robot: Instances, tool: ToolConfig) -> Rigid
 
 
 def let_touch(
-    plant: MultibodyPlant, scene_graph: SceneGraph, body: RigidBody, names: Sequence[str]
+    plant: MultibodyPlant, scene_graph: SceneGraph, body: RigidBody, tool: ToolConfig
 ) -> None:
-    """Let a tool touch bodies of a finalized plant by their names.
+    """Let a tool's body touch what it may, bodies of a finalized plant by their names.
 
     Raises:
         ModelError: there is no such body, or more than one.
     """
     bodies = [plant.get_body(BodyIndex(i)) for i in range(1, plant.num_bodies())]
     others = [other for other in bodies if other.index() != body.index()]
-    for name in names:
+    for name in tool.touches:
         other = find_body(
             name,
             others,
-            key="robot.tool.touches",
+            key=f"{tool.place}.touches",
             kind="part",
             many="parts of the workcell",
             where="the workcell",

@@ -33,7 +33,6 @@ from drake_screw.robot.parts import (
     add_robot,
     add_surroundings,
 )
-from drake_screw.robot.tool import let_touch
 from drake_screw.screws import pose, quaternion_from_rotation
 from drake_screw.typing import Array
 
@@ -215,9 +214,9 @@ def build_workcell(
             f"the start configuration has {len(robot.start)} angles for {arm.n} joints"
         )
     scene_graph = builder.scene_graph()
-    if robot.tool is not None and added.tool is not None:
+    if robot.tool is not None:
         arm.held(robot.tool.frame)
-        let_touch(plant, scene_graph, added.tool, robot.tool.touches)
+    added.let_tools_touch(scene_graph)
     unknown_links = let_links_touch(plant, scene_graph, added.models, robot)
     diagram = builder.Build()
     arm.owner = diagram

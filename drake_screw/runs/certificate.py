@@ -9,7 +9,7 @@ import numpy as np
 
 from drake_screw.acquisition import Finished, Status
 from drake_screw.assembly.following import free_roll
-from drake_screw.assembly.freedoms import Freedom, freedoms
+from drake_screw.assembly.freedoms import Freedom, freedoms, tool_touches
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits.spending import attempt_delta
 from drake_screw.errors import listed
@@ -32,6 +32,8 @@ class Certificate:
         clearance: m, that the robot keeps from all else and itself, where that is checked.
         joint_margin: rad, that revolute joints keep from their limits.
         slide_margin: m, that prismatic ones keep.
+        arms: names of the robot's arms that a plan may be of, in the order in which they are tried;
+            () where there is only one.
         incomplete_shapes: links of the robot that lack collision shapes of its model; what touches
             there is not seen.
         strategy: name of the bandit.
@@ -83,6 +85,7 @@ class Certificate:
     joint_margin: float = 0.0
     slide_margin: float = 0.0
     ignored_collisions: tuple[tuple[str, str], ...] = ()
+    arms: tuple[str, ...] = ()
     incomplete_shapes: tuple[str, ...] = ()
     tool_touches: tuple[str, ...] | None = None
     turned_any_way: tuple[str, ...] | None = None
@@ -145,8 +148,18 @@ class Certificate:
             f"This is of {self.regions} region{'' if self.regions == 1 else 's'}, with "
             f"{self.demonstrations} demonstration{'' if self.demonstrations == 1 else 's'}, for "
             f"places drawn uniformly in each region{self._places()}. To succeed is to have a plan "
-            f"{within} the joint limits of the robot's model{collisions}.{self._unseen()}"
-            f"{self._way_there()}"
+            f"{within} the joint limits of the robot's model{collisions}."
+            f"{self._of_arms()}{self._unseen()}{self._way_there()}"
+        )
+
+    def _of_arms(self) -> str:
+        if len(self.arms) < 2:
+            return ""
+        *others, last = self.arms
+        rest = "the others rest" if len(others) > 1 else "the other rests"
+        return (
+            f" A plan is of one arm, {', '.join(others)} or {last}, the first of these that can, "
+            f"from its own start; {rest} at {'theirs' if len(others) > 1 else 'its own'}."
         )
 
     def _places(self) -> str:
@@ -257,8 +270,9 @@ def certificate(
         joint_margin=setup.scenario.planner.joint_margin,
         slide_margin=setup.scenario.planner.slide_margin,
         ignored_collisions=setup.scenario.robot.ignore_collisions,
+        arms=tuple(arm.name for arm in setup.scenario.robot.arms or ()),
         incomplete_shapes=setup.workcell.model.incomplete,
-        tool_touches=None if setup.robot.tool is None else setup.robot.tool.touches or None,
+        tool_touches=tool_touches(setup.scenario) or None,
         turned_any_way=tuple(o.name for o in setup.area.objects if o.any_orientation) or None,
         apart=setup.scenario.apart or None,
         strategy=bandit.name,

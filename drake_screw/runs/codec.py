@@ -91,6 +91,7 @@ def save_evaluation(file: Path, evaluation: Evaluation) -> None:
         "fraction": outcomes.fraction,
         "variant": outcomes.variant,
         "pair": outcomes.pair,
+        "arm": outcomes.arm,
         **_frontier_arrays(evaluation.frontier),
     }
     np.savez_compressed(file, **arrays)
@@ -111,6 +112,7 @@ def load_evaluation(file: Path) -> Evaluation:
             data["fraction"],
             data.get("variant", np.zeros(data["cause"].shape, dtype=np.int16)),  # one in old runs
             data.get("pair"),  # not known in old runs
+            data.get("arm"),  # the only one in old runs
         )
         region = data["region"].astype(np.int64)
         return Evaluation(_coordinates(data), region, outcomes, _frontier(data))

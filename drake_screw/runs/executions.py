@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from drake_screw.assembly.placing import InstanceLike, placed
+from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Setup
-from drake_screw.assembly.why_not import why_not
+from drake_screw.assembly.ways import why_failed
 from drake_screw.errors import ModelError
 from drake_screw.execution import build_station, recording_html
 from drake_screw.execution.motors import assumed_motors, immovable
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
+from drake_screw.execution.simulate import Execution
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Outcomes, concatenate
@@ -59,7 +61,8 @@ def execute(
     """Plan, simulate and report executions of a run.
 
     Of every instance the best plan with the run's demonstrations is simulated: that with the
-    largest margin to the joint limits which touches nothing. A table, a summary and
+    largest margin to the joint limits which touches nothing, of several arms that of the best; the
+    others hold their starts. A table, a summary and
     a recording that plays go into a new folder ``executions/<time>`` of the run.
 
     Args:
@@ -76,11 +79,11 @@ def execute(
     opened = open_run(run)
     setup, demonstrations = opened.setup, opened.demonstrations
     _check_masses(setup)
-    planner = setup.careful_planner
+    planner = setup.planner_of_all(careful=True)
 
     def plan(coordinates: Array) -> Outcomes:
         X_WO = setup.area.X_WO(coordinates)
-        return planner.any_success(demonstrations, X_WO, setup.workcell.start)
+        return planner.any_success(demonstrations, X_WO, setup.start)
 
     if instance is None:
         coordinates, outcomes = _fresh_instances(setup, plan, per_region)
@@ -90,37 +93,37 @@ def execute(
     X_WO = setup.area.X_WO(coordinates)
     solved = np.flatnonzero(outcomes.any_success).tolist()
     best = {i: setup.plan(demonstrations, coordinates[i], most=1) for i in solved}
-    jobs = [Job(best[i].plan, X_WO[i]) for i in solved]
-    config = StationConfig(setup.robot, setup.table, setup.objects, setup.obstacles)
-    done = dict(zip(solved, execute_all(config, jobs, workers=workers), strict=True))
+    done = _executed(setup, best, X_WO, workers)
     trials = []
     for i, place in enumerate(coordinates):
         region = int(setup.regions.index(place))
         if i in done:
             name, turned = best[i].demonstration.name, best[i].turned
             angles = tuple((turn.body, turn.angle) for turn in turned)
-            trials.append(Trial(region, place, name, "", done[i], angles))
+            of = best[i].arm_name or ""
+            trials.append(Trial(region, place, name, "", done[i], angles, of))
         else:
-            why = why_not(outcomes[i], demonstrations, X_WO[i], setup.workcell.start, planner)
+            why = why_failed(setup.arms, outcomes[i], demonstrations, X_WO[i])
             trials.append(Trial(region, place, "", why, None))
     found = summarize(trials)
 
     def fill(folder: Path) -> None:
         (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
         (folder / "summary.txt").write_text(f"{found}\n")
+        robots = {one.name: one.robot for one in setup.arms}
         shown = [
-            (trial.execution, setup.area.X_WO(trial.coordinates))
+            (
+                trial.execution,
+                setup.area.X_WO(trial.coordinates),
+                robots.get(trial.arm, setup.robot),
+            )
             for trial in _chosen(trials)
             if trial.execution is not None
         ]
         if shown:
             with scratch():
                 page = recording_html(
-                    shown,
-                    setup.robot,
-                    table=setup.table,
-                    objects=setup.objects,
-                    obstacles=setup.obstacles,
+                    shown, table=setup.table, objects=setup.objects, obstacles=setup.obstacles
                 )
             (folder / "executions.html").write_text(page)
 
@@ -134,6 +137,20 @@ def execute(
             folder.rmdir()
             raise
     return Executions(folder, _assumed(setup), found)
+
+
+def _executed(
+    setup: Setup, best: Mapping[int, RankedPlan], X_WO: Array, workers: int | None
+) -> dict[int, Execution]:
+    """Executions of the best plans of instances, each in a station that moves the plan's arm."""
+    done: dict[int, Execution] = {}
+    for one in setup.arms:
+        own = [i for i, plan in best.items() if plan.arm is one.arm]
+        if own:
+            config = StationConfig(one.robot, setup.table, setup.objects, setup.obstacles)
+            jobs = [Job(best[i].plan, X_WO[i]) for i in own]
+            done |= dict(zip(own, execute_all(config, jobs, workers=workers), strict=True))
+    return done
 
 
 def station_graphviz(run: PathLike) -> str:
@@ -165,9 +182,9 @@ def _check_masses(setup: Setup) -> None:
 
 
 def _assumed(setup: Setup) -> tuple[str, ...]:
-    arm, workcell = setup.workcell.arm, setup.workcell
-    motors = assumed_motors(workcell.plant, workcell.robot, arm.joint_names)
-    return (*arm.assumptions, *motors)
+    workcell = setup.workcell
+    moved = [name for one in setup.arms for name in one.arm.joint_names]
+    return (*setup.assumptions, *assumed_motors(workcell.plant, workcell.robot, moved))
 
 
 def _fresh_instances(

@@ -41,6 +41,8 @@ class OutcomeTable:
             column's name.
         success_rates: share of the instances that each demonstration solves, by its name.
         solved: share that at least one of them solves.
+        arms: share that each arm solves, where the robot has several that are planned for: of an
+            instance the first that can; {} otherwise.
         collisions: how the others collide; None where collisions are not looked at.
         seconds: that planning took.
     """
@@ -51,6 +53,7 @@ class OutcomeTable:
     unlike_fixed: dict[str, int]
     success_rates: dict[str, float]
     solved: float
+    arms: dict[str, float]
     collisions: CollisionCounts | None
     seconds: float
 
@@ -72,6 +75,7 @@ class OutcomeTable:
         )
         lines += (f"  {name}: {rate:.1%}" for name, rate in self.success_rates.items())
         lines.append(f"solved by at least one: {self.solved:.2%}")
+        lines += (f"  of these with arm {name}: {rate:.2%}" for name, rate in self.arms.items())
         if self.collisions is not None and self.collisions.collisions:
             lines.append(str(self.collisions))
         lines.append(f"written to {self.output}")
@@ -87,7 +91,8 @@ def tabulate_outcomes(
         scenario: gives robot, start configuration, objects and segmentation.
         demonstrations: folder of recordings, of the robot that the scenario says they are of.
         instances: CSV to read, see `read_instances`.
-        output: CSV to write, see `outcomes_csv`; with a column `demonstration:body` for each body
+        output: CSV to write, see `outcomes_csv`; with a column `demonstration:arm` for the arm that
+            an outcome is of where there are several, a column `demonstration:body` for each body
             that a demonstration may turn, and a column `demonstration:touches` for each
             demonstration of which a plan collides, with the bodies: "left_hand-bowl".
 
@@ -101,9 +106,10 @@ def tabulate_outcomes(
     outcomes = setup.evaluate(learned, coordinates)
     seconds = time.perf_counter() - began
     turns = _turns(setup, learned, setup.area.X_WO(coordinates), outcomes)
+    arms = _arms(setup, learned, outcomes)
     touching = _touching(setup, learned, setup.area.X_WO(coordinates), outcomes)
     names = [d.name for d in learned]
-    text = outcomes_csv(coordinates, outcomes, names, setup.area, turns, touching)
+    text = outcomes_csv(coordinates, outcomes, names, setup.area, turns, {**arms, **touching})
     with writing(output, WRITABLE_OUTPUT):
         write_text(output, text)
     rates = outcomes.success.mean(axis=0).tolist()
@@ -114,6 +120,7 @@ def tabulate_outcomes(
         unlike_fixed=unlike_fixed(coordinates, setup.area),
         success_rates={d.name: rate for d, rate in zip(learned, rates, strict=True)},
         solved=float(outcomes.any_success.mean()),
+        arms=_shares(setup, outcomes),
         collisions=(
             count_collisions(outcomes, setup.workcell) if scenario.planner.collision else None
         ),
@@ -126,16 +133,38 @@ def _turns(
 ) -> dict[str, Array]:
     """Columns (N,) for each demonstration and each symmetric body that it turns, rad."""
     names = [*(o.name for o in setup.area.objects), TOOL]
-    columns = {}
+    columns: dict[str, Array] = {}
     for d, demonstration in enumerate(demonstrations):
-        bodies = setup.symmetries.bodies(demonstration)
-        if not bodies:
-            continue
-        angles = setup.symmetries.angles(demonstration, X_WO, outcomes.variant[:, d])
-        for body in bodies:
-            turned = np.remainder(angles[:, body] + np.pi, 2.0 * np.pi) - np.pi
-            columns[f"{demonstration.name}:{names[body]}"] = turned
+        for one in setup.arms:
+            own = outcomes.arm[:, d] == one.number
+            variant = outcomes.variant[own, d]
+            angles = one.symmetries.angles(demonstration, X_WO[own], variant)
+            for body in one.symmetries.bodies(demonstration):
+                turned = np.remainder(angles[:, body] + np.pi, 2.0 * np.pi) - np.pi
+                name = f"{demonstration.name}:{names[body]}"
+                columns.setdefault(name, np.zeros(len(X_WO)))[own] = turned
     return columns
+
+
+def _arms(
+    setup: Setup, demonstrations: Sequence[Demonstration], outcomes: Outcomes
+) -> dict[str, list[str]]:
+    """Columns (N,) for each demonstration: the arm that its outcomes are of, where several are."""
+    if not setup.arms[0].among_several:
+        return {}
+    names = np.array([one.name for one in setup.arms])
+    return {
+        f"{demonstration.name}:arm": names[outcomes.arm[:, d]].tolist()
+        for d, demonstration in enumerate(demonstrations)
+    }
+
+
+def _shares(setup: Setup, outcomes: Outcomes) -> dict[str, float]:
+    """The share of instances that each of several arms solves, the first that can."""
+    solved = np.where(outcomes.success, outcomes.arm, len(setup.arms)).min(axis=1)
+    return {
+        one.name: float((solved == one.number).mean()) for one in setup.arms if one.among_several
+    }
 
 
 def _touching(
@@ -162,4 +191,4 @@ def _bodies(
         return (known,)
     plan = cut_short(setup.judged_plan(demonstration, X_WO, outcome), outcome)
     clearance = setup.scenario.planner.clearance
-    return touching_bodies(outcome, setup.workcell, plan.q[-1], X_WO, clearance)
+    return touching_bodies(outcome, setup.arm_of(outcome).workcell, plan.q[-1], X_WO, clearance)

@@ -246,18 +246,20 @@ class RunReader:
         """One demonstration tried at an instance, cut short where the run saw a collision."""
         event = self.event(round)
         X_WO = self.setup.area.X_WO(event.evaluation.coordinates[instance])
-        workcell, demonstration = self.setup.workcell, event.demonstrations[number]
+        demonstration = event.demonstrations[number]
         found = event.evaluation.outcomes[instance][number]
         if found.cause == Cause.NOT_TRIED:
             planner = self.setup.planner
-            found = planner.all_outcomes([demonstration], X_WO[None], workcell.start)[0, 0]
+            found = planner.all_outcomes([demonstration], X_WO[None], self.setup.start)[0, 0]
         plan = self.setup.judged_plan(demonstration, X_WO, found)
-        names = [o.name for o in self.setup.area.objects]
-        turned = self.setup.symmetries.named(demonstration, X_WO, plan.angles, names)
-        tried = replace(attempt(workcell.arm, number, demonstration, X_WO, plan), turned=turned)
+        names, one = [o.name for o in self.setup.area.objects], self.setup.arm_of(found)
+        turned = one.symmetries.named(demonstration, X_WO, plan.angles, names)
+        name = self.setup.arm_name(found)
+        tried = attempt(one.arm, number, demonstration, X_WO, plan, name)
+        tried = replace(tried, turned=turned)
         if found.cause != Cause.COLLISION:
             return tried
-        return collided(tried, found, workcell, self.setup.scenario.planner.clearance)
+        return collided(tried, found, one.workcell, self.setup.scenario.planner.clearance)
 
     def _event(self, round: int) -> RoundFinished:
         """A round as the run had it; without drawing or planning anything."""

@@ -72,7 +72,7 @@ def _kept(reader: RunReader, number: int, recording: Recording, remark: str) -> 
     if number >= len(reader.directory.record.demonstrations):
         setup = reader.setup
         fidelity = setup.learn(recording).fidelity
-        held = setup.scenario.robot.parked
+        held = {name: q for one in setup.arms for name, q in one.robot.parked.items()}
         reader.directory.add_demonstration(number, recording, remark, held, fidelity)
     return reader.recording(number)
 

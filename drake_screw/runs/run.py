@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -82,12 +82,17 @@ class Run:
         return self.reader.demonstrations(count)
 
     def plan(
-        self, *, start: ArrayLike | None = None, most: int = 5, **objects: PlaceLike
+        self,
+        *,
+        start: ArrayLike | Mapping[str, ArrayLike] | None = None,
+        most: int = 5,
+        **objects: PlaceLike,
     ) -> RankedPlan:
         """The best plan for a task instance with the run's demonstrations, in memory.
 
         Args:
-            start: (n,) rad or m, where the arm is; the scenario's start if None.
+            start: (n,) rad or m, where the arm is; the scenario's start if None. Of several arms as
+                for `Setup.plan`.
             most: plans to return, the best one and its alternatives.
             objects: x, y in m and, where it varies, yaw in rad of each object, by its name:
                 ``run.plan(bowl=(0.9, 0.1))``, or any axes, ``run.plan(bowl={"x": 0.9, ...})``.

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from drake_screw.assembly.placing import InstanceLike, placed
+from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
 from drake_screw.errors import ScenarioError, counted
 from drake_screw.execution.setting import Setting
-from drake_screw.execution.timing import TimedPlan
 from drake_screw.files import WRITABLE_OUTPUT, write_bytes, write_files, writing
 from drake_screw.plugins import find, names
 from drake_screw.robot import Arm
@@ -31,6 +31,7 @@ class Trajectory:
         output: the file, or the folder of a format of several files.
         format: of the file, a name that `plugins.find` knows as an exporter.
         demonstration: name of the one whose plan it is.
+        arm: that moves, where the robot has several that are planned for.
         segments: of the plan.
         duration: s.
         turned: rad, by which symmetric objects are turned, by their names.
@@ -50,6 +51,7 @@ class Trajectory:
     tightest: str
     outside: bool
     assumed: tuple[str, ...] = ()
+    arm: str | None = None
 
     def __str__(self) -> str:
         lines = ["note: the instance lies outside the work area"] if self.outside else []
@@ -57,12 +59,15 @@ class Trajectory:
         return "\n".join(
             [
                 *lines,
-                f"planned with {self.demonstration}{_words(self.turned)}: "
+                f"planned with {self.demonstration}{self._of_arm()}{_words(self.turned)}: "
                 f"{counted(self.segments, 'segment')}, {self.duration:.1f} s; "
                 f"{self.tightest} comes nearest to a limit, {self.margin:.1%} of its range away",
                 f"written to {self.output}",
             ]
         )
+
+    def _of_arm(self) -> str:
+        return "" if self.arm is None else f" for arm {self.arm}"
 
 
 def write_trajectory(
@@ -84,12 +89,13 @@ def write_trajectory(
     writer = find("exporters", format)
     opened = open_run(run)
     setup = opened.setup
-    _check_robot(format, setup.workcell.arm)
+    for one in setup.arms:
+        _check_robot(format, one.arm)
     coordinates = placed(setup.area, instance)
     best = setup.plan(opened.demonstrations, coordinates, most=1)
     output = Path(output)
     with writing(output, WRITABLE_OUTPUT):
-        content = _content(writer, best.timed, setup, coordinates)
+        content = _content(writer, best, setup, coordinates)
         if isinstance(content, bytes):
             write_bytes(output, content)
         else:
@@ -104,16 +110,17 @@ def write_trajectory(
         margin=best.margin,
         tightest=best.tightest,
         outside=not setup.area.contains(coordinates),
-        assumed=setup.workcell.arm.assumptions,
+        assumed=best.arm.assumptions,
+        arm=best.arm_name,
     )
 
 
 def _content(
-    writer: Callable[..., Any], plan: TimedPlan, setup: Setup, coordinates: Array
+    writer: Callable[..., Any], best: RankedPlan, setup: Setup, coordinates: Array
 ) -> bytes | Mapping[str, bytes]:
     """What an exporter makes of a plan; one that asks for the setting is given it."""
     content: bytes | Mapping[str, bytes]
-    arm = setup.workcell.arm
+    plan, arm = best.timed, best.arm
     if "setting" not in signature(writer).parameters:
         content = writer(plan, arm)
         return content

@@ -90,6 +90,9 @@ _RULES = """\
 - `robot.start` has one value for each joint and lies strictly inside the model's joint limits.
 - In `robot`, and likewise in `recorded_on`, no joint is named twice, and none of the arm's joints
   is in `parked`.
+- `robot` has either `joints`, `end_effector` and `start` (and perhaps `end_effector_rotation` and
+  `tool`), or `arms`, each of which has its own. Names of arms differ, they share no joint, and
+  nothing of the robot touches itself where all of them are at their starts.
 - `regions` has either `grid` or `adaptive`. An axis whose range is a single value cannot be
   divided.
 - With `regions.adaptive`, `coverage.strategy` is not used and `coverage.options` must be empty.

@@ -12,6 +12,7 @@ from pydantic import Field, PrivateAttr
 from drake_screw.errors import suggestion
 from drake_screw.scenario.block import Block, Problem
 from drake_screw.scenario.object_blocks import ObjectBlock, standing_problems
+from drake_screw.scenario.robot_blocks import RecordedOnBlock, RobotBlock
 from drake_screw.scenario.run_blocks import (
     CoverageBlock,
     DemonstrationsBlock,
@@ -22,12 +23,7 @@ from drake_screw.scenario.run_blocks import (
 from drake_screw.scenario.segmentation_block import SegmentationBlock
 from drake_screw.scenario.shape_blocks import ObstacleBlock
 from drake_screw.scenario.values import Name
-from drake_screw.scenario.workcell_blocks import (
-    RecordedOnBlock,
-    RobotBlock,
-    TableBlock,
-    repeated,
-)
+from drake_screw.scenario.workcell_blocks import TableBlock, repeated
 from drake_screw.tasks import AXES
 
 MOST_REGIONS = 4096
@@ -42,7 +38,7 @@ class Scenario(Block):
     description: str = ""
     """what the scenario is, in one line"""
     robot: RobotBlock
-    """the arm"""
+    """the robot, and the arm or arms of it that are planned for"""
     table: TableBlock | None = None
     """the table, a box; leave it out for none"""
     objects: tuple[ObjectBlock, ...]

@@ -154,7 +154,8 @@ class Experiment:
 
     def __init__(self, scenario: Scenario) -> None:
         self.setup = Setup(scenario)
-        self.setup.batch_planner.threads = 1
+        for one in self.setup.arms:
+            one.batch_planner.threads = 1
         self._learned: dict[Path, Demonstration] = {}
 
     def run(self, K: int, run: int) -> StudyRun:
@@ -174,7 +175,7 @@ class Experiment:
         setup = self.setup
         seed = run_seed(setup.scenario.seed, K, run)
         regions = split(setup.area, K)
-        evaluator = Evaluator(setup.planner, regions, setup.workcell.start, setup.strategy, seed)
+        evaluator = Evaluator(setup.planner, regions, setup.start, setup.strategy, seed)
         return acquire(
             evaluator.evaluate,
             UsableLessons(self._teacher(regions), self._learn),

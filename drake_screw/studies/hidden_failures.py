@@ -110,9 +110,7 @@ def evenly(
     """
     setup, K = experiment.setup, regions.K
     coordinates, region = draw_in_all(regions, EACH, seed=seed, round=0)
-    outcomes = setup.planner.any_success(
-        demonstrations, setup.area.X_WO(coordinates), setup.workcell.start
-    )
+    outcomes = setup.planner.any_success(demonstrations, setup.area.X_WO(coordinates), setup.start)
     evaluation = Evaluation(coordinates, region, outcomes)
     samples = np.full(K, EACH)
     failures = np.bincount(region[evaluation.failed], minlength=K)

@@ -140,7 +140,7 @@ class Study:
         self, missing: Sequence[tuple[int, int]], workers: int | None
     ) -> Iterator[StudyRun]:
         """Runs as they are finished; the arm's code is compiled here, and only once."""
-        first = int(not self.experiment.setup.batch_planner.compiled)
+        first = int(not all(one.batch_planner.compiled for one in self.experiment.setup.arms))
         for K, run in missing[:first]:
             yield self.experiment.run(K, run)
         build = (

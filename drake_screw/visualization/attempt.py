@@ -38,6 +38,7 @@ class Attempt:
         turned: how symmetric bodies are turned.
         bodies: names of the pairs of bodies that touch where the plan ended, after a collision.
         clearance: m, that they had to keep.
+        arm_name: the arm's, where the robot has several that are planned for.
     """
 
     arm: Arm
@@ -49,6 +50,7 @@ class Attempt:
     turned: tuple[Turned, ...] = ()
     bodies: tuple[Pair, ...] = ()
     clearance: float = 0.0
+    arm_name: str | None = None
 
     @property
     def guides(self) -> Array:
@@ -132,7 +134,12 @@ class Attempt:
 
 
 def attempt(
-    arm: Arm, number: int, demonstration: Demonstration, X_WO: ArrayLike, plan: Plan
+    arm: Arm,
+    number: int,
+    demonstration: Demonstration,
+    X_WO: ArrayLike,
+    plan: Plan,
+    arm_name: str | None = None,
 ) -> Attempt:
     """A plan of an instance with a demonstration, to look at.
 
@@ -142,10 +149,11 @@ def attempt(
         demonstration: that was carried over.
         X_WO: (k, 4, 4) the instance's objects.
         plan: what came of it.
+        arm_name: the arm's, where the robot has several that are planned for.
     """
     X_WO = np.asarray(X_WO, dtype=float)
     starts = np.concatenate([arm.pose(plan.q[:1]), plan.guides])[:-1]
-    return Attempt(arm, number, demonstration, X_WO, starts, plan)
+    return Attempt(arm, number, demonstration, X_WO, starts, plan, arm_name=arm_name)
 
 
 def collided(
@@ -167,9 +175,10 @@ def collided(
 def headline(attempt: Attempt) -> str:
     """How an attempt ended, in one sentence."""
     arm, plan, total = attempt.arm, attempt.plan, len(attempt.guides)
+    of = "" if attempt.arm_name is None else f" with arm {attempt.arm_name}"
     if plan.success:
         joint, margin = attempt.tightest
-        done = f"succeeds in all {total} screw segments{_turns(attempt)}"
+        done = f"succeeds{of} in all {total} screw segments{_turns(attempt)}"
         if arm.endless[joint]:
             return f"{done}; no joint has limits"
         return (
@@ -184,15 +193,15 @@ def headline(attempt: Attempt) -> str:
         if abs(plan.q[-1, joint] - arm.upper[joint]) < abs(plan.q[-1, joint] - arm.lower[joint]):
             which, limit = "upper", arm.upper[joint]
         return (
-            f"fails {where}: {arm.joint_names[joint]} reaches its {which} limit, "
+            f"fails{of} {where}: {arm.joint_names[joint]} reaches its {which} limit, "
             f"{limit:.3f} {arm.units[joint]}".replace("-", "−")
         )
     if attempt.cause == Cause.COLLISION:
         touching = "; ".join(touch_words(pair, attempt.clearance) for pair in attempt.bodies[:2])
-        return f"fails {where}: {touching or 'the arm touches something'}"
+        return f"fails{of} {where}: {touching or 'the arm touches something'}"
     return (
-        f"fails {where}: the end effector gets no farther along this screw; the arm is stretched "
-        "out or near a singular pose"
+        f"fails{of} {where}: the end effector gets no farther along this screw; the arm is "
+        "stretched out or near a singular pose"
     )
 
 

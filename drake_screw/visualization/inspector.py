@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from pydrake.geometry import Meshcat
 
-from drake_screw.robot import ObjectConfig, Workcell
+from drake_screw.robot import Arm, ObjectConfig, Workcell
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes, screw_shapes
 from drake_screw.visualization.attempt import AHEAD, DONE, FAILED, Attempt
@@ -55,16 +55,16 @@ class Inspector:
 
     Args:
         meshcat: drawn into.
-        workcell: of the scenario.
+        workcells: of each arm that is planned for.
         objects: how the objects look.
     """
 
     def __init__(
-        self, meshcat: Meshcat, workcell: Workcell, objects: Sequence[ObjectConfig]
+        self, meshcat: Meshcat, workcells: Sequence[Workcell], objects: Sequence[ObjectConfig]
     ) -> None:
         self.meshcat = meshcat
-        self.linkage = Linkage(workcell)
-        self._workcell = workcell
+        self._workcells = tuple(workcells)
+        self._linkages = tuple(Linkage(workcell) for workcell in workcells)
         self._objects = tuple(objects)
         self.clear()
 
@@ -82,9 +82,29 @@ class Inspector:
 
     def aim(self, X_WO: Array) -> None:
         """Point the camera at the objects at X_WO (k, 4, 4), with the arm in the picture."""
-        shoulder = self.linkage.joint_frames(0, np.zeros((1, self.linkage.arm.n)))[0, :3, 3]
+        linkage = self._linkages[0]
+        shoulder = linkage.joint_frames(0, np.zeros((1, linkage.arm.n)))[0, :3, 3]
         target = 0.4 * shoulder + 0.6 * X_WO[:, :3, 3].mean(axis=0)
         self.meshcat.SetCameraPose(target + np.array(VIEW), target)
+
+    def pose(self, arm: Arm, q: Array) -> None:
+        """Show an arm at q (n,) rad or m, and the others at rest."""
+        for path, X_WL in self._poses(arm, q[None]).items():
+            self.meshcat.SetTransform(path, X_WL[0])
+
+    def _poses(self, arm: Arm, q: Array) -> dict[str, Array]:
+        """X_WL (m, 4, 4) of all arms' links by their paths, one arm at q (m, n), others at rest."""
+        found: dict[str, Array] = {}
+        for workcell, linkage in zip(self._workcells, self._linkages, strict=True):
+            moves = linkage.arm.joint_names == arm.joint_names
+            X_WL = linkage.poses(q if moves else workcell.start[None])
+            X_WL = np.broadcast_to(X_WL, (len(q), *X_WL.shape[1:]))
+            found |= {f"/workcell/{name}": X_WL[:, i] for i, name in enumerate(linkage.names)}
+        return found
+
+    def _number(self, arm: Arm) -> int:
+        names = [linkage.arm.joint_names for linkage in self._linkages]
+        return names.index(arm.joint_names)
 
     def draw(self, attempt: Attempt) -> Drawn:
         """Draw an attempt in place of an earlier one with the same demonstration."""
@@ -100,20 +120,19 @@ class Inspector:
         self._draw_turns(f"{path}/turned", attempt)
         samples = attempt.samples(SAMPLES)
         q = attempt.plan.q[samples]
-        X_WL = self.linkage.poses(q)
-        moving = {f"/workcell/{name}": X_WL[:, i] for i, name in enumerate(self.linkage.names)}
+        moved = self._number(attempt.arm)
+        linkage, workcell = self._linkages[moved], self._workcells[moved]
+        moving = self._poses(attempt.arm, q)
         if not attempt.plan.success:
             last, color = attempt.plan.q[-1], STATUS_COLORS[FAILED]
-            self.linkage.draw_copy(self.meshcat, f"{path}/ghost", last, color, GHOST_OPACITY)
-            positions = self._workcell.positions(last, attempt.X_WO)
+            linkage.draw_copy(self.meshcat, f"{path}/ghost", last, color, GHOST_OPACITY)
+            positions = workcell.positions(last, attempt.X_WO)
             touching = [name for pair in attempt.bodies for name in pair]
             place = f"{path}/ghost/touching"
-            self.linkage.draw_bodies(
-                self.meshcat, place, touching, positions, color, TOUCHING_OPACITY
-            )
+            linkage.draw_bodies(self.meshcat, place, touching, positions, color, TOUCHING_OPACITY)
         if attempt.failed_joint is not None:
             moving |= self._draw_dial(f"{path}/dial", attempt, attempt.failed_joint, q)
-            X_WJ = self.linkage.joint_frames(attempt.failed_joint, attempt.plan.q[-1:])[0]
+            X_WJ = linkage.joint_frames(attempt.failed_joint, attempt.plan.q[-1:])[0]
             ring = meshes.ring(RING, 0.012).moved(X_WJ)
             draw(self.meshcat, f"{path}/ghost/joint", ring, STATUS_COLORS[FAILED])
         return Drawn(attempt, path, samples, moving)
@@ -150,7 +169,7 @@ class Inspector:
     def _draw_dial(self, path: str, attempt: Attempt, joint: int, q: Array) -> dict[str, Array]:
         """The range of a joint as a dial around it, its limits, and a needle where it stands."""
         arm = attempt.arm
-        X_WJ = self.linkage.joint_frames(joint, q)
+        X_WJ = self._linkages[self._number(arm)].joint_frames(joint, q)
         color = STATUS_COLORS[FAILED]
         if arm.units[joint] != "rad" or arm.endless[joint]:
             mark = meshes.ring(DIAL[1], 0.014)

@@ -43,6 +43,7 @@ def attempt_record(attempt: Attempt) -> dict[str, Any]:
     return {
         "demonstration": attempt.number,
         "name": attempt.demonstration.name,
+        **({} if attempt.arm_name is None else {"arm": attempt.arm_name}),
         "outcome": Cause(int(outcome.cause)).name.lower(),
         "words": headline(attempt),
         "segment": attempt.failed_segment,

@@ -59,7 +59,12 @@ def panel_state(
         found = reader.outcomes(selection.round, selection.instance)
         attempts = [
             attempt_entry(
-                number, demonstration.name, found[number], drawn.get(number), reader.setup.workcell
+                number,
+                demonstration.name,
+                found[number],
+                drawn.get(number),
+                reader.setup.workcell,
+                reader.setup.arm_name(found[number]),
             )
             for number, demonstration in enumerate(event.demonstrations)
         ]
@@ -92,7 +97,12 @@ def panel_state(
 
 
 def attempt_entry(
-    number: int, name: str, found: Outcomes, drawn: Drawn | None, workcell: Workcell
+    number: int,
+    name: str,
+    found: Outcomes,
+    drawn: Drawn | None,
+    workcell: Workcell,
+    arm_name: str | None = None,
 ) -> dict[str, Any]:
     """A line of the panel's list of demonstrations.
 
@@ -102,12 +112,16 @@ def attempt_entry(
         found: of shape (), what the run found.
         drawn: the attempt, if it is drawn; its own outcome is shown then.
         workcell: knows bodies that touch by their names.
+        arm_name: of the arm that it found this with, where there are several.
     """
     outcome = found if drawn is None else drawn.attempt.plan.outcome
     cause = Cause(int(outcome.cause))
     words = OUTCOME_NAMES[cause]
     if cause not in (Cause.SUCCESS, Cause.NOT_TRIED):
         words += f" in segment {int(outcome.segment) + 1}, {float(outcome.fraction):.0%} along it"
+    arm_name = arm_name if drawn is None else drawn.attempt.arm_name
+    if arm_name is not None and cause != Cause.NOT_TRIED:
+        words += f", arm {arm_name}"
     pair = known_pair(outcome, workcell)
     bodies = (() if pair is None else (pair,)) if drawn is None else drawn.attempt.bodies[:1]
     words += "".join(f": {a}, {b}" for a, b in bodies)

@@ -26,7 +26,7 @@ class InspectorScene:
         self.meshcat = meshcat
         self._reader = reader
         self._scene = make_scene(setup, meshcat)
-        self._inspector = Inspector(meshcat, setup.workcell, setup.objects)
+        self._inspector = Inspector(meshcat, setup.workcells, setup.objects)
         self._round: int | None = None
 
     def show(self, selection: Selection, *, live: bool) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -52,13 +53,13 @@ def write_report(reader: RunReader, folder: Path | None = None) -> Path:
     folder = reader.directory.path if folder is None else folder
     with writing(folder, _REMEDY):
         folder.mkdir(parents=True, exist_ok=True)
-    linkage = Linkage(reader.setup.workcell)
+    linkages = tuple(Linkage(workcell) for workcell in reader.setup.workcells)
     rounds = []
     for round in range(reader.rounds):
         selection = select(reader, round)
         page = f"{PAGES}/round_{round + 1:02d}"
         save_page(reader, selection, folder / f"{page}.html")
-        rounds.append(_round(reader, selection, linkage, page))
+        rounds.append(_round(reader, selection, linkages, page))
     text = render(
         "drake_screw.web",
         "report.html.j2",
@@ -108,7 +109,9 @@ def _record(reader: RunReader) -> dict[str, Any]:
     }
 
 
-def _round(reader: RunReader, selection: Selection, linkage: Linkage, page: str) -> dict[str, Any]:
+def _round(
+    reader: RunReader, selection: Selection, linkages: Sequence[Linkage], page: str
+) -> dict[str, Any]:
     """One round: its heat map, its worst regions, and one instance of it looked at closely."""
     event = reader.event(selection.round)
     folder = reader.directory.round_folder(selection.round)
@@ -120,8 +123,8 @@ def _round(reader: RunReader, selection: Selection, linkage: Linkage, page: str)
         "heat_map": _picture(folder / "heat_map.png"),
         "K": event.regions.K,
         "regions": _regions(event),
-        "instance": _instance(reader, selection, linkage, page),
-        "others": _others(reader, selection, linkage),
+        "instance": _instance(reader, selection, linkages, page),
+        "others": _others(reader, selection, linkages),
     }
 
 
@@ -146,7 +149,7 @@ def _regions(event: RoundFinished) -> list[dict[str, Any]]:
 
 
 def _instance(
-    reader: RunReader, selection: Selection, linkage: Linkage, page: str
+    reader: RunReader, selection: Selection, linkages: Sequence[Linkage], page: str
 ) -> dict[str, Any] | None:
     """The suggested instance, or the earliest failing: all attempts, the best of them drawn."""
     if selection.instance is None or selection.demonstration is None:
@@ -177,11 +180,13 @@ def _instance(
         ],
         "best": best.number + 1,
         "chart": joint_chart(best),
-        "sketch": _sketch(best, linkage, setup),
+        "sketch": _sketch(best, linkages, setup),
     }
 
 
-def _others(reader: RunReader, selection: Selection, linkage: Linkage) -> list[dict[str, Any]]:
+def _others(
+    reader: RunReader, selection: Selection, linkages: Sequence[Linkage]
+) -> list[dict[str, Any]]:
     """The earliest failing instance of each of the worst regions but the selected one's."""
     setup, event = reader.setup, reader.event(selection.round)
     book = reader.catalogue(selection.round)
@@ -203,7 +208,7 @@ def _others(reader: RunReader, selection: Selection, linkage: Linkage) -> list[d
                 "number": instance,
                 "best": best + 1,
                 "headline": headline(tried),
-                "sketch": _sketch(tried, linkage, setup),
+                "sketch": _sketch(tried, linkages, setup),
             }
         )
         if len(others) == OTHERS:
@@ -211,15 +216,17 @@ def _others(reader: RunReader, selection: Selection, linkage: Linkage) -> list[d
     return others
 
 
-def _sketch(tried: Attempt, linkage: Linkage, setup: Setup) -> Markup:
+def _sketch(tried: Attempt, linkages: Sequence[Linkage], setup: Setup) -> Markup:
+    joints = [arm.robot.joints for arm in setup.arms]
+    number = joints.index(tried.arm.joint_names)
     return arm_sketch(
         tried,
-        linkage,
+        linkages[number],
         setup.area,
         setup.objects,
         setup.table,
         obstacles=setup.obstacles,
-        tool=setup.robot.tool,
+        tool=setup.arms[number].robot.tool,
     )
 
 

@@ -13,7 +13,6 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Recording
 from drake_screw.runs.narration import describe
 from drake_screw.runs.pictures import make_scene
-from drake_screw.typing import Array
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.visualization.meshcat_page import render
@@ -81,7 +80,7 @@ class TeachingPage:
             self._inbox.open()
         setup, meshcat = self._setup, page_meshcat(self._host)
         self._scene = make_scene(setup, meshcat)
-        self._inspector = Inspector(meshcat, setup.workcell, setup.objects)
+        self._inspector = Inspector(meshcat, setup.workcells, setup.objects)
         key = ((ACCENT, "demonstrate here"), *KEY)
         panel = render("drake_screw.web", "teaching.html.j2", accent=ACCENT, key=key)
         self._title = f"{setup.scenario.name}: teach"
@@ -122,11 +121,11 @@ class TeachingPage:
             now = time.monotonic()
             if changed and now - updated > UPDATE_PERIOD:
                 updated, changed = now, session.recording
-                self._pose_arm(session.guided.q)
+                self._inspector.pose(session.guided.arm, session.guided.q)
                 self._server.show(session.state())
         self._inspector.clear()
         self._scene.clear_suggestion()
-        self._pose_arm(self._setup.workcell.start)
+        self._inspector.pose(session.guided.arm, session.start)
         given = session.accepted is not None
         self._show_idle("thank you; the run goes on" if given else "no demonstration there")
         return session.accepted
@@ -171,11 +170,6 @@ class TeachingPage:
         todo = "correct it, or drop another" if session.leading else "accept or repeat it"
         self._announce(f"{words}\n{todo}: {self.url}")
         return True
-
-    def _pose_arm(self, q: Array) -> None:
-        linkage = self._inspector.linkage
-        for name, X in zip(linkage.names, linkage.poses(q[None])[0], strict=True):
-            self._inspector.meshcat.SetTransform(f"/workcell/{name}", X)
 
 
 def interactive_teacher(setup: Setup) -> InteractiveTeacher:

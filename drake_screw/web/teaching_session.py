@@ -12,7 +12,7 @@ import numpy as np
 from drake_screw.acquisition import Suggestion
 from drake_screw.acquisition.guided_arm import GuidedArm
 from drake_screw.assembly.setup import Setup
-from drake_screw.demonstrations import FaithfulConfig, Recording, read_recording
+from drake_screw.demonstrations import FaithfulConfig, Recording
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
 from drake_screw.planning import Cause
@@ -54,7 +54,8 @@ class TeachingSession:
         number: of the demonstration, from 0.
 
     Attributes:
-        guided: the arm, as the person leads it.
+        guided: the arm, as the person leads it: of several the one nearest to the object.
+        start: (n,) rad or m, where it starts.
         over: whether the person has decided.
         accepted: the recording they accepted, if they did.
     """
@@ -65,7 +66,9 @@ class TeachingSession:
         self._setup, self._inspector, self._number = setup, inspector, number
         self._suggestion = suggestion
         self._X_WO = setup.area.X_WO(suggestion.coordinates)
-        self._X_WE_start = setup.workcell.arm.pose(setup.workcell.start)
+        one = setup.nearest_arm(suggestion.coordinates)
+        self._arm, self.start = one.arm, one.start
+        self._X_WE_start = one.arm.pose(one.start)
         self.over = False
         self.accepted: Recording | None = None
         self._message = ""
@@ -121,12 +124,8 @@ class TeachingSession:
 
     def offer_folder(self, folder: Path) -> str:
         """Offer a recording from a folder; returns what became of it, in words."""
-        arm, objects = self.guided.arm, len(self._setup.objects)
         try:
-            recording = read_recording(
-                folder, arm.joint_names, arm.lower, arm.upper, objects=objects
-            )
-            self._offer(recording)
+            self._offer(self._setup.own_recorder.read(folder))
         except DrakeScrewError as error:
             self._message = str(error)
         else:
@@ -137,7 +136,7 @@ class TeachingSession:
         """What the panel shows."""
         arm, q = self.guided.arm, self.guided.q
         margin = arm.margin(q)
-        least, greatest = drawn_range(arm.lower, arm.upper, self._setup.workcell.start[None])
+        least, greatest = drawn_range(arm.lower, arm.upper, self.start[None])
         low, high = self._slider_range
         stuck = "the arm cannot follow: a joint is at its limit, or it is stretched out"
         asked = place(self._suggestion, self._suggestion.regions or self._setup.regions)
@@ -175,8 +174,7 @@ class TeachingSession:
         return ["stop"] if self.recording else ["record", "skip"]
 
     def _restart(self) -> None:
-        start = self._setup.workcell.start
-        self.guided = GuidedArm(self._setup.workcell.arm, start, PERIOD)
+        self.guided = GuidedArm(self._arm, self.start, PERIOD)
         self._sliders = self._slider_values(self._X_WE_start)
         self._q_wanted = self._samples = self._offered = None
         self._segments = []
@@ -222,14 +220,12 @@ class TeachingSession:
     def _offer(self, recording: Recording) -> None:
         """Cut a recording into screws and plan the suggested instance with it."""
         demonstration = self._setup.learn(recording)
-        workcell = self._setup.workcell
-        planner, X_WO = self._setup.planner, self._X_WO
-        found = planner.all_outcomes([demonstration], X_WO[None], workcell.start)[0, 0]
-        plan = self._setup.judged_plan(demonstration, X_WO, found)
-        tried = attempt(workcell.arm, self._number, demonstration, X_WO, plan)
+        setup, X_WO = self._setup, self._X_WO
+        found = setup.planner.all_outcomes([demonstration], X_WO[None], setup.start)[0, 0]
+        plan, one = setup.judged_plan(demonstration, X_WO, found), setup.arm_of(found)
+        tried = attempt(one.arm, self._number, demonstration, X_WO, plan, setup.arm_name(found))
         if found.cause == Cause.COLLISION:
-            clearance = self._setup.scenario.planner.clearance
-            tried = collided(tried, found, workcell, clearance)
+            tried = collided(tried, found, one.workcell, setup.scenario.planner.clearance)
         self._inspector.draw(tried)
         self._segments = _segment_lines(tried)
         self._message = (

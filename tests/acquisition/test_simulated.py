@@ -28,6 +28,7 @@ AREA = WorkArea((ObjectArea("bowl", (0.7056, -0.2367, 0.0), (1.0796, 0.7833, 0.0
 JOINTS = tuple(f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2"))
 START = (1.04349043, -0.22012624, -0.74704864, 1.52439341, 1.88181093, -0.96870887)
 LAST = {"pouring": -0.49087385, "scooping": 1.02968460}
+"""The last joint at the start, for each motion at a single object."""
 MIRROR = np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 PLACES = tuple((x, y) for x in (0.7056, 1.0796) for y in (-0.2367, 0.1, 0.45, 0.7833))
 
@@ -58,7 +59,7 @@ def ask(teacher: SimulatedTeacher, x: float, y: float, seed: int, number: int = 
     )
 
 
-@pytest.fixture(scope="module", params=sorted(MOTIONS))
+@pytest.fixture(scope="module", params=sorted(LAST))
 def motion(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 

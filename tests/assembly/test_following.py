@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from drake_screw.assembly.following import axis_words, cannot_follow, free_roll
@@ -14,6 +15,7 @@ from tests.planning.conftest import serial_arm
 from tests.planning.test_position_and_axis import five_joints
 
 FREE = "planner.task=position_and_axis"
+START = np.full(6, 0.3)
 
 
 def scenario(n: int, *changes: str) -> Scenario:
@@ -28,28 +30,31 @@ def of_joints(n: int) -> Arm:
 
 
 def test_of_six_joints_nothing_is_said() -> None:
-    assert list(cannot_follow(scenario(6), of_joints(6))) == []
+    assert list(cannot_follow(scenario(6), of_joints(6), START)) == []
     assert free_roll(scenario(6)) is None
-    assert hints(scenario(6), of_joints(6)) == ()
+    assert hints(scenario(6), of_joints(6), START) == ()
 
 
 def test_five_joints_are_told_of_the_remedy() -> None:
-    said = " ".join(cannot_follow(scenario(5), five_joints()))
+    said = " ".join(cannot_follow(scenario(5), five_joints(), START[:5]))
     assert "5 joints" in said
     assert "planner.task: position_and_axis" in said
     assert "a turn about [" in said
-    assert list(cannot_follow(scenario(5, FREE, "planner.free_axis=y"), five_joints())) == []
+    assert (
+        list(cannot_follow(scenario(5, FREE, "planner.free_axis=y"), five_joints(), START[:5]))
+        == []
+    )
 
 
 def test_four_joints_are_too_few_for_either() -> None:
-    assert "takes five joints" in " ".join(cannot_follow(scenario(4), of_joints(4)))
-    (said,) = cannot_follow(scenario(4, FREE), of_joints(4))
+    assert "takes five joints" in " ".join(cannot_follow(scenario(4), of_joints(4), START[:4]))
+    (said,) = cannot_follow(scenario(4, FREE), of_joints(4), START[:4])
     assert "fewer than the five directions" in said
 
 
 def test_an_axis_that_leaves_a_direction_lacking() -> None:
     flat = serial_arm([("0.1 0 0", "0 0 1", 2.0) for _ in range(5)])
-    (said,) = cannot_follow(scenario(5, FREE, "planner.free_axis=x"), flat)
+    (said,) = cannot_follow(scenario(5, FREE, "planner.free_axis=x"), flat, START[:5])
     assert "still lacks a direction" in said
 
 

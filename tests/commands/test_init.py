@@ -78,6 +78,7 @@ def test_what_is_shipped_is_listed(command: Command) -> None:
     assert [item["name"] for item in shipped["scenarios"]] == [
         "fetching",
         "pouring",
+        "pouring_both",
         "pouring_iiwa",
         "pouring_panda",
         "pouring_paper",

@@ -77,6 +77,7 @@ def test_an_end_without_certificate_is_a_result(command: Command) -> None:
         ["pouring", "--set", "regions={adaptive: {}}"],
         ["pouring", "--set", "teacher={kind: interactive}"],
         ["pouring_iiwa"],
+        ["pouring_both", "--set", "teacher={kind: interactive}"],
     ],
 )
 def test_check(command: Command, args: list[str]) -> None:

@@ -105,9 +105,9 @@ def test_nothing_executed_is_said_too(trials) -> None:
 
 
 def test_the_recording_is_one_page_with_every_execution(config, executed) -> None:
-    shown = (executed[0], X_WO)
-    one = recording_html([shown], config.robot, objects=config.objects)
-    two = recording_html([shown, shown], config.robot, objects=config.objects)
+    shown = (executed[0], X_WO, config.robot)
+    one = recording_html([shown], objects=config.objects)
+    two = recording_html([shown, shown], objects=config.objects)
     assert "<html" in one
     assert "https://" not in one.split("<body")[0]
     assert len(two) > len(one) + 50_000

@@ -19,7 +19,10 @@ EARLIER = SimpleNamespace(samples=48, attempted=False)
 ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 
 
-def scenario_of(collision=False, objects=(), tool=None, approach="screw", ignored=(), **kept):
+def scenario_of(
+    collision=False, objects=(), tool=None, approach="screw", ignored=(), arms=(), **kept
+):
+    each = [SimpleNamespace(name=n, tool=tool, end_effector="hand") for n in arms or ("arm",)]
     return SimpleNamespace(
         coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
         planner=SimpleNamespace(
@@ -30,7 +33,10 @@ def scenario_of(collision=False, objects=(), tool=None, approach="screw", ignore
             turns=24,
         ),
         objects=objects,
-        robot=SimpleNamespace(tool=tool, ignore_collisions=ignored, end_effector="hand"),
+        apart=False,
+        robot=SimpleNamespace(
+            arms=each if arms else None, each_arm=each, ignore_collisions=ignored
+        ),
     )
 
 
@@ -46,6 +52,7 @@ def stated_by(name, mu, rounds=(), scenario=None, led_around=None, **options):
         bandit=bandit,
         tree=None,
         regions=SimpleNamespace(K=3),
+        area=SimpleNamespace(objects=()),
         workcell=SimpleNamespace(model=SimpleNamespace(incomplete=())),
     )
     status = Status.CERTIFIED if verdict.certified else Status.INSUFFICIENT
@@ -102,6 +109,26 @@ def test_what_is_kept_is_said() -> None:
     assert "at least 0.1 rad and 0.01 m, where joints slide, within the joint limits" in text
 
 
+@pytest.mark.parametrize(
+    ("arms", "said"),
+    [
+        (("one",), "joint limits of the robot's model; collisions do not count. Of what"),
+        (
+            ("a", "b"),
+            "A plan is of one arm, a or b, the first of these that can, from its own start",
+        ),
+        (("a", "b"), "; the other rests at its own."),
+        (("a", "b", "c"), "a, b or c, the first of these that can, from its own start; the others"),
+    ],
+)
+def test_which_arms_may_be_used_is_said(arms: tuple[str, ...], said: str) -> None:
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario_of(arms=arms))
+    assert stated.arms == arms
+    assert said in text
+    _, _, text = stated_by("eprocess", [0.0, 0.0, 0.0])
+    assert "A plan is of one arm" not in text
+
+
 def test_what_may_touch_is_said() -> None:
     pairs = (("left_finger", "right_finger"), ("base", "table"))
     for collision in (True, False):
@@ -110,6 +137,11 @@ def test_what_may_touch_is_said() -> None:
         assert stated.ignored_collisions == pairs
         said = "Whether these touch is not looked at: left_finger and right_finger, base and table."
         assert (said in text) is collision
+    tool = SimpleNamespace(symmetry=None, touches=("bowl", "left_finger"))
+    scenario = scenario_of(collision=True, tool=tool, arms=("left", "right"))
+    stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
+    assert stated.tool_touches == tool.touches
+    assert "what the hand holds and bowl, what the hand holds and left_finger." in text
 
 
 def test_it_says_what_was_taken_for_granted() -> None:
@@ -123,7 +155,7 @@ def test_it_says_what_was_taken_for_granted() -> None:
         SimpleNamespace(name="mug", symmetry=None),
         SimpleNamespace(name="box", symmetry=SimpleNamespace(axis="x", turns=4)),
     ]
-    tool = SimpleNamespace(symmetry=symmetry)
+    tool = SimpleNamespace(symmetry=symmetry, touches=())
     scenario = scenario_of(objects=objects, tool=tool, approach="free")
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
     assert [(f.body, f.axis, f.turns, f.tried) for f in stated.freedoms] == [
@@ -188,6 +220,7 @@ def test_a_run_that_never_began_states_nothing() -> None:
         bandit=bandit,
         tree=None,
         regions=SimpleNamespace(K=3),
+        area=SimpleNamespace(objects=()),
         workcell=SimpleNamespace(model=SimpleNamespace(incomplete=())),
     )
     finished = Finished(Status.INSUFFICIENT, "no initial demonstration", None, ())

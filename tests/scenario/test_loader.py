@@ -17,6 +17,7 @@ from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.resources import MODEL_SUFFIXES, find_resource, list_resources
 from drake_screw.scenario.loader import dump_scenario, load_scenario, load_stored_scenario
 from drake_screw.scenario.object_blocks import ObjectBlock
+from drake_screw.scenario.robot_blocks import RecordedOnBlock, RobotBlock
 from drake_screw.scenario.run_blocks import (
     AdaptiveBlock,
     CoverageBlock,
@@ -28,11 +29,7 @@ from drake_screw.scenario.run_blocks import (
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.segmentation_block import SegmentationBlock
 from drake_screw.scenario.values import Interval
-from drake_screw.scenario.workcell_blocks import (
-    RecordedOnBlock,
-    RobotBlock,
-    TableBlock,
-)
+from drake_screw.scenario.workcell_blocks import TableBlock
 from drake_screw.tasks import AXES
 
 SMALL = """\
@@ -372,7 +369,7 @@ def test_all_problems_are_told_at_once(write: Callable[..., Path]) -> None:
     assert error.message.splitlines() == [
         "3 problems",
         "  line 2: robot.end_effector: missing; expected text",
-        "    Meaning: name of the frame that the demonstrations move.",
+        "    Meaning: name of the frame that the demonstrations move; needed without `arms`.",
         "  line 10: table.topp: unknown key",
         "    Did you mean 'top'? Keys of table: center, size, top, thickness",
         "  line 21: coverage.beta: expected a number, found text 'high'",
@@ -438,10 +435,8 @@ def test_unknown_name_lists_the_shipped_ones() -> None:
     error = error_of("pourng")
     assert error.message == "no scenario 'pourng'"
     assert error.remedy is not None
-    shipped = (
-        "fetching, pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e, scooping, "
-    )
-    shipped += "scooping_paper"
+    shipped = "fetching, pouring, pouring_both, pouring_iiwa, pouring_panda, pouring_paper, "
+    shipped += "pouring_ur5e, scooping, scooping_paper"
     assert error.remedy.startswith(f"Did you mean 'pouring'? Shipped scenarios: {shipped}.")
 
 
@@ -451,7 +446,7 @@ def test_missing_file_suggests_its_neighbour(write: Callable[..., Path]) -> None
     error = error_of(wrong)
     assert error.message == f"no file '{wrong}'"
     assert f"Did you mean '{file}'? " in (error.remedy or "")
-    assert "fetching, pouring, pouring_iiwa, pouring_panda, pouring_paper, pouring_ur5e" in (
+    assert "fetching, pouring, pouring_both, pouring_iiwa, pouring_panda, pouring_paper" in (
         error.remedy or ""
     )
 

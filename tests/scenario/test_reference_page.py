@@ -51,7 +51,7 @@ def test_units_defaults_and_limits_are_told() -> None:
     assert row.startswith("| `spacing` | a number | m | none | above 0 |")
     assert "0.004 where faithful, 0.005 where published" in row
     row = next(line for line in section("robot").splitlines() if "`joints`" in line)
-    assert row.startswith("| `joints` | a list of texts |  | *required* |")
+    assert row.startswith("| `joints` | a list of texts |  | none |")
     row = next(line for line in section("coverage").splitlines() if "`strategy`" in line)
     assert "`naive_pac`, `clopper_pearson`" in row
 

@@ -14,6 +14,7 @@ from drake_screw.bandits import STRATEGIES
 from drake_screw.scenario.block import Block, Problem
 from drake_screw.scenario.object_blocks import ObjectBlock
 from drake_screw.scenario.problems import problems_of
+from drake_screw.scenario.robot_blocks import RecordedOnBlock, RobotBlock
 from drake_screw.scenario.run_blocks import (
     CoverageBlock,
     DemonstrationsBlock,
@@ -22,10 +23,6 @@ from drake_screw.scenario.run_blocks import (
 )
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.values import Interval
-from drake_screw.scenario.workcell_blocks import (
-    RecordedOnBlock,
-    RobotBlock,
-)
 
 BOWL = ObjectBlock(
     name="bowl", x=Interval(0.7, 1.1), y=Interval(0.3, 0.3), z=0.0, radius=0.08, height=0.06

@@ -220,7 +220,7 @@ def test_links_and_joint_frames_are_where_the_plant_has_them(workcell) -> None:
 
 
 def test_what_is_drawn_and_what_moves(limited, workcell, meshcat) -> None:
-    inspector = Inspector(meshcat, workcell, OBJECTS)
+    inspector = Inspector(meshcat, [workcell], OBJECTS)
     inspector.show_instance(limited.X_WO)
     drawn = inspector.draw(limited)
     for path in (
@@ -248,7 +248,7 @@ def test_what_is_drawn_and_what_moves(limited, workcell, meshcat) -> None:
 
 
 def test_a_success_has_no_ghost(easy, workcell, meshcat) -> None:
-    Inspector(meshcat, workcell, OBJECTS).draw(easy)
+    Inspector(meshcat, [workcell], OBJECTS).draw(easy)
     assert not meshcat.HasPath("/attempts/01/ghost")
     assert not meshcat.HasPath("/attempts/01/dial")
 
@@ -260,7 +260,7 @@ def test_bodies_that_touch_are_drawn_where_they_do(easy, workcell, meshcat) -> N
     tried = collided(easy, outcome, workcell)
     assert headline(tried).endswith(f"50.0% along it: {robot} touches bowl")
     assert attempt_record(tried)["touching"] == [[robot, "bowl"]]
-    drawn = Inspector(meshcat, workcell, OBJECTS).draw(tried)
+    drawn = Inspector(meshcat, [workcell], OBJECTS).draw(tried)
     assert meshcat.HasPath("/attempts/01/ghost/baxter/left_hand")
     for path in (f"baxter/{robot}", "bowl/bowl"):
         assert meshcat.HasPath(f"/attempts/01/ghost/touching/{path}"), path

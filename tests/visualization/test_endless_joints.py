@@ -53,7 +53,7 @@ def test_an_attempt(tmp_path: Path, meshcat, endless: tuple[str, ...]) -> None:
     end = json.loads(text, parse_constant=no_infinity)["attempts"][0]["end"]
     assert end["p1"]["lower"] is None
     assert end["p1"]["margin"] is None
-    state = json.dumps(drawn_state(Inspector(meshcat, workcell, BOWL).draw(made)))
+    state = json.dumps(drawn_state(Inspector(meshcat, [workcell], BOWL).draw(made)))
     joints = json.loads(state, parse_constant=no_infinity)["joints"]
     assert [j["upper"] is None for j in joints] == [name in endless for name in NAMES]
     if endless == NAMES:

@@ -145,7 +145,7 @@ def test_a_folder_that_cannot_be_watched(tmp_path) -> None:
 
 def test_nonsense_does_not_move_the_arm() -> None:
     setup = Setup(load_scenario("pouring", [INTERACTIVE]))
-    inspector = Inspector(page_meshcat("localhost"), setup.workcell, setup.objects)
+    inspector = Inspector(page_meshcat("localhost"), setup.workcells, setup.objects)
     place = Suggestion(6, np.array([[0.85, 0.45, 0.0]]), 2)
     session = TeachingSession(setup, inspector, place, 0)
     for message in (
