@@ -10,11 +10,11 @@ import numpy as np
 
 from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.stations import check_masses, check_standing, station_config
 from drake_screw.assembly.why_not import why_not
-from drake_screw.errors import ModelError
-from drake_screw.execution import build_station, recording_html
-from drake_screw.execution.motors import assumed_motors, immovable
-from drake_screw.execution.parallel import Job, StationConfig, execute_all
+from drake_screw.execution import recording_html
+from drake_screw.execution.motors import assumed_motors
+from drake_screw.execution.parallel import Job, execute_all
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Outcomes, concatenate
@@ -55,6 +55,8 @@ def execute(
     per_region: int = 2,
     instance: InstanceLike | None = None,
     workers: int | None = None,
+    free_objects: bool = False,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Executions:
     """Plan, simulate and report executions of a run.
 
@@ -69,14 +71,21 @@ def execute(
         instance: execute this one instead: {object: (x, y[, yaw])}, or the numbers of all objects
             in their order, as `placed` takes them.
         workers: processes; as many as processors if None.
+        free_objects: objects can be pushed, and pushing one farther than the scenario's block
+            `execution` allows is a flaw; else they are locked in place.
+        progress: called with how many are done and how many there are to simulate.
 
     Raises:
         DrakeScrewError: the run cannot be read or has no demonstrations, the instance is not one,
-            the model lacks inertia, or the folder cannot be written.
+            the model lacks inertia, a free object has nothing to stand on, or the folder cannot be
+            written.
     """
     opened = open_run(run)
     setup, demonstrations = opened.setup, opened.demonstrations
-    _check_masses(setup)
+    check_masses(setup)
+    config = station_config(setup, free_objects=free_objects)
+    if free_objects:
+        check_standing(setup, config)
     planner = setup.careful_planner
 
     def plan(x_y_yaw: Array) -> Outcomes:
@@ -92,8 +101,8 @@ def execute(
     solved = np.flatnonzero(outcomes.any_success).tolist()
     best = {i: setup.plan(demonstrations, x_y_yaw[i], most=1) for i in solved}
     jobs = [Job(best[i].plan, X_WO[i]) for i in solved]
-    config = StationConfig(setup.robot, setup.table, setup.objects, setup.obstacles)
-    done = dict(zip(solved, execute_all(config, jobs, workers=workers), strict=True))
+    executed = execute_all(config, jobs, workers=workers, progress=progress)
+    done = dict(zip(solved, executed, strict=True))
     trials = []
     for i, place in enumerate(x_y_yaw):
         region = int(setup.regions.index(place))
@@ -122,6 +131,7 @@ def execute(
                     table=setup.table,
                     objects=setup.objects,
                     obstacles=setup.obstacles,
+                    free_objects=free_objects,
                 )
             (folder / "executions.html").write_text(page)
 
@@ -132,32 +142,13 @@ def execute(
     return Executions(folder, _assumed(setup), found)
 
 
-def station_graphviz(run: PathLike) -> str:
+def station_graphviz(run: PathLike, *, free_objects: bool = False) -> str:
     """The simulated diagram of a run as GraphViz text.
 
     Raises:
         DrakeScrewError: the run cannot be read.
     """
-    setup = open_run(run).setup
-    return build_station(
-        setup.robot, table=setup.table, objects=setup.objects, obstacles=setup.obstacles
-    ).graphviz
-
-
-def _check_masses(setup: Setup) -> None:
-    workcell = setup.workcell
-    positions = workcell.arm.full_positions(workcell.start)
-    found = immovable(workcell.plant, workcell.robot, positions)
-    if found is not None:
-        joint, links = found
-        named = (
-            f"its links {', '.join(links)} have no mass" if links else "none has any about its axis"
-        )
-        raise ModelError(
-            f"joint '{joint}' cannot be driven: what it moves has no inertia; {named}",
-            remedy="Give the links an <inertial> with mass and inertia; planning does without.",
-            file=workcell.model_file,
-        )
+    return station_config(open_run(run).setup, free_objects=free_objects).build().graphviz
 
 
 def _assumed(setup: Setup) -> tuple[str, ...]:

@@ -58,6 +58,9 @@ class CoverageBlock(Block):
     """accuracy to which failure probabilities are measured; below 1 - beta"""
     delta: Probability = 0.05
     """probability that the measurement may be wrong: 1 - confidence"""
+    success: Annotated[Literal["plan", "execution"], OneOf(("plan", "execution"))] = "plan"
+    """what counts as a success: a plan, or a plan whose execution in simulation, objects free to
+    move, does no more than the block `execution` allows"""
     strategy: Annotated[str, PartOf("strategies")] = "eprocess"
     """the bandit that measures coverage"""
     options: Options = Field(default={})

@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr
 
 from drake_screw.errors import suggestion
 from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.execution_block import ExecutionBlock
 from drake_screw.scenario.run_blocks import (
     CoverageBlock,
     DemonstrationsBlock,
@@ -64,6 +65,8 @@ class Scenario(Block):
     """how recordings are cut into constant screws"""
     planner: PlannerBlock = PlannerBlock()
     """how plans are computed"""
+    execution: ExecutionBlock = ExecutionBlock()
+    """what a simulated execution may do and still be as planned"""
     seed: Annotated[int, Field(ge=0)] = 0
     """seed of all random draws"""
     meshcat: bool = False
@@ -122,6 +125,7 @@ class Scenario(Block):
                     f"there is no object '{name}'",
                     suggestion(name, names, "Objects"),
                 )
+        yield from self._executed()
         yield from self._adaptive()
         yield from self._grid()
         K = math.prod(count for counts in self.cells for count in counts)
@@ -131,6 +135,17 @@ class Scenario(Block):
                 f"{K:,} regions; a grid has {MOST_REGIONS:,} at most",
                 "Write smaller numbers, or `adaptive: {}` for cells that get small only where "
                 "needed.",
+            )
+
+    def _executed(self) -> Iterator[Problem]:
+        if self.coverage.success == "plan":
+            return
+        if not self.planner.collision:
+            yield Problem(
+                ("planner", "collision"),
+                "plans are executed (coverage.success: execution), and those that touch something "
+                "never are",
+                "Write planner.collision: true, or coverage.success: plan.",
             )
 
     def _adaptive(self) -> Iterator[Problem]:

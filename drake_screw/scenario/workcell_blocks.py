@@ -188,6 +188,10 @@ class ObjectBlock(Block):
     """radius of the object, to draw it and for collisions"""
     height: Annotated[Positive, METRES]
     """height of the object, to draw it and for collisions"""
+    mass: Annotated[Positive, Field(json_schema_extra={"unit": "kg"})] = 0.3
+    """mass of the object, a solid cylinder, where it is free to move in an execution"""
+    friction: Annotated[float, Field(ge=0.0)] = 0.6
+    """its coefficient of friction there; with table and robot, which have 0.6, that is 0.6, too"""
     symmetry: SymmetryBlock | None = None
     """how it may be turned about an axis and be the same to the task; left out if it may not"""
 
