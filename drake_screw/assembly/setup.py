@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TypedDict, Unpack
@@ -14,12 +15,15 @@ from drake_screw.acquisition import AskingRule, Evaluator, Teacher, TreeEvaluato
 from drake_screw.acquisition.first import first_place
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
+from drake_screw.assembly.executing import ExecutedTries, Kept
 from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.assembly.ranked_plans import RankedPlan, best_plan
 from drake_screw.assembly.recorder import Learning, Recorder
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
+from drake_screw.errors import ScenarioError
+from drake_screw.execution.noise import Noise
 from drake_screw.planning import Cause, Outcomes, Plan, Planner, connection
 from drake_screw.plugins import find
 from drake_screw.scenario.schema import Scenario
@@ -273,12 +277,45 @@ class Setup(PlanningSetup):
             self.careful_planner, self.workcell.arm, demonstrations, X_WO, q_start, names, most
         )
 
-    def evaluator(self, progress: Progress | None = None) -> Evaluator | TreeEvaluator:
-        """What carries out the rounds of the scenario; `progress` is called with every batch."""
+    def evaluator(
+        self, progress: Progress | None = None, kept: Kept | None = None
+    ) -> Evaluator | TreeEvaluator:
+        """What carries out the rounds of the scenario.
+
+        Args:
+            progress: called with every batch, and as its plans are executed where they are.
+            kept: remembers executions.
+        """
         start, seed = self.workcell.start, self.scenario.seed
+        executing = self.executing
+        if executing is not None:
+            executing = replace(executing, progress=progress, kept=kept)
+        also = seed, progress, executing
         if self.tree is not None:
-            return TreeEvaluator(self.planner, self.area, start, self.tree, seed, progress)
-        return Evaluator(self.planner, self.regions, start, self.strategy, seed, progress)
+            return TreeEvaluator(self.planner, self.area, start, self.tree, *also)
+        return Evaluator(self.planner, self.regions, start, self.strategy, *also)
+
+    @cached_property
+    def executing(self) -> ExecutedTries | None:
+        """What executes the plans of instances; None where a plan is a success.
+
+        Raises:
+            ModelError: the model lacks inertia.
+            ScenarioError: an object has nothing to stand on, or a planner was passed in, whose
+                plans are not those that would be executed.
+        """
+        if self.scenario.coverage.success == "plan":
+            return None
+        if "planner" in self.passed_in:
+            raise ScenarioError(
+                "plans are executed (coverage.success: execution), and those of a planner that is "
+                "passed in cannot be",
+                remedy="Leave the planner out, or write coverage.success: plan.",
+                file=self.scenario.source,
+            )
+        tries = ExecutedTries(self, Noise(**dict(self.scenario.execution.noise)))
+        tries.check()
+        return tries
 
     def learn(self, recording: Recording) -> Demonstration:
         """Turn a recording into a demonstration, by the kinematics of the arm it was made on.

@@ -7,12 +7,43 @@ import time
 from collections.abc import Callable
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+from rich.progress import BarColumn, Progress, TextColumn
 
 _log = logging.getLogger(__name__)
 
 QUIET = 10.0
 """s, at least, between two lines."""
+
+
+class Pace:
+    """How fast work goes, and when it is time to say so again.
+
+    Args:
+        clock: s, from any beginning.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock, self._told = clock, -QUIET
+        self._first: tuple[int, int, float] = 0, 0, clock()
+
+    def of(self, done: int, total: int) -> str:
+        """How far it is: "3 of 16, about 4 min left".
+
+        The clock starts with another total, or when less is done than at first.
+        """
+        first, of, began = self._first
+        if of != total or done <= first:
+            self._first = first, of, began = done, total, self._clock()
+        left = time_left(done - first, total - first, self._clock() - began)
+        return f"{done:,} of {total:,}" + (left and f", {left}")
+
+    def due(self) -> bool:
+        """Whether enough time has gone by since it last was; then it is not for a while."""
+        now = self._clock()
+        if now - self._told < QUIET:
+            return False
+        self._told = now
+        return True
 
 
 class Countdown:
@@ -22,7 +53,7 @@ class Countdown:
     lines go to the log instead.
 
     Args:
-        what: is being done, in words: "executions".
+        what: is being done, in words: "executed".
         console: to write to.
         clock: s, from any beginning.
     """
@@ -30,18 +61,16 @@ class Countdown:
     def __init__(
         self, what: str, console: Console, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._what, self._clock, self._terminal = what, clock, console.is_terminal
-        self._began = self._told = clock()
+        self._what, self._terminal, self._pace = what, console.is_terminal, Pace(clock)
         self._live = Progress(
-            TextColumn("{task.description}"),
+            TextColumn(what),
             BarColumn(),
-            MofNCompleteColumn(),
-            TextColumn("{task.fields[left]}"),
+            TextColumn("{task.fields[how_far]}"),
             console=console,
             transient=True,
             disable=not console.is_terminal,
         )
-        self._bar = self._live.add_task(what, total=None, left="")
+        self._bar = self._live.add_task(what, total=None, how_far="")
 
     def __enter__(self) -> Countdown:
         self._live.start()
@@ -51,15 +80,11 @@ class Countdown:
         self._live.stop()
 
     def __call__(self, done: int, total: int) -> None:
-        """So many are done of so many; with none the clock starts."""
-        now = self._clock()
-        if done == 0:
-            self._began = now
-        left = time_left(done, total, now - self._began)
-        self._live.update(self._bar, completed=done, total=total, left=left)
-        if not self._terminal and done < total and (done == 0 or now - self._told >= QUIET):
-            self._told = now
-            _log.info("%s: %d of %d%s", self._what, done, total, left and f", {left}")
+        """So many are done of so many."""
+        how_far = self._pace.of(done, total)
+        self._live.update(self._bar, completed=done, total=total, how_far=how_far)
+        if not self._terminal and done < total and self._pace.due():
+            _log.info("%s %s", self._what, how_far)
 
 
 def time_left(done: int, total: int, elapsed: float) -> str:

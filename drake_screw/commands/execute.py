@@ -66,7 +66,7 @@ def execute(
         print(executions.station_graphviz(run, free_objects=free_objects))
         return
     count = 2 if per_region is None else per_region
-    with Countdown("executions", output.console) as countdown:
+    with Countdown("executed", output.console) as countdown:
         done = executions.execute(
             run,
             per_region=count,

@@ -8,10 +8,10 @@ from functools import partial
 
 import numpy as np
 
-from drake_screw.execution.allowed import Allowed
+from drake_screw.execution.allowed import Allowed, said
 from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
-from drake_screw.execution.timing import TimeLimits, time_plan
+from drake_screw.execution.timing import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Plan
 from drake_screw.processes import share_out
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
@@ -114,6 +114,57 @@ def execute_all(
 
 def carry_out(bench: Bench, job: Job) -> Execution:
     """Time and simulate one plan; its logs are thinned out."""
+    done, _ = _simulated(bench, job)
+    return done.thinned(KEPT)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What an execution came to, in few numbers.
+
+    Attributes:
+        flaw: what explains most of what went wrong, a `Flaw` by its text; "" where nothing did.
+        words: all that went wrong.
+        segment: the screw segment in which that was first seen, from 0; the last one if nothing.
+        fraction: how much of that segment was done, 0 to 1.
+        position, rotation: m and rad, greatest distance of the end effector from where it ought to
+            be at that time.
+        displacement, turn: m and rad, that an object was moved at most.
+        force: N, greatest with which the robot touched something.
+    """
+
+    flaw: str
+    words: str
+    segment: int
+    fraction: float
+    position: float
+    rotation: float
+    displacement: float
+    turn: float
+    force: float
+
+
+def judge(bench: Bench, job: Job) -> Judged:
+    """Time and simulate one plan, and say how it went."""
+    done, timed = _simulated(bench, job)
+    report = done.report
+    flaw = report.flaws[0] if report.flaws else None
+    end = timed.duration if flaw is None or flaw.time is None else flaw.time
+    at = timed.at(end)
+    return Judged(
+        flaw="" if flaw is None else flaw.kind.value,
+        words=said(report.flaws),
+        segment=at.segment,
+        fraction=min(max(at.s, 0.0), 1.0),
+        position=report.tracking.position,
+        rotation=report.tracking.rotation,
+        displacement=max((o.position for o in report.moved), default=0.0),
+        turn=max((o.rotation for o in report.moved), default=0.0),
+        force=report.force,
+    )
+
+
+def _simulated(bench: Bench, job: Job) -> tuple[Execution, TimedPlan]:
     station, plan, limits = bench.station, job.plan, bench.config.limits
     start = station.arm.pose(plan.q[:1])
     timed = time_plan(plan, np.concatenate([start, plan.guides]), station.arm, limits)
@@ -122,4 +173,4 @@ def carry_out(bench: Bench, job: Job) -> Execution:
         station, timed, job.X_WO,
         joint_offset=job.joint_offset, wanted=wanted, allowed=bench.config.allowed,
     )  # fmt: skip
-    return done.thinned(KEPT)
+    return done, timed

@@ -12,6 +12,7 @@ from drake_screw.assembly.following import free_roll
 from drake_screw.assembly.freedoms import Freedom, freedoms
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits.spending import attempt_delta
+from drake_screw.runs.execution_terms import ExecutionTerms
 from drake_screw.runs.html import certificate_html
 
 
@@ -51,6 +52,8 @@ class Certificate:
             motion.
         led_around: whether an arm was led around what a free approach touches, for which OMPL has
             to be there; None where that was not asked of it, or is not known.
+        success: what counts as one, a "plan" or its "execution".
+        execution: what executions had to do; None where plans are not executed.
         kept_position: m, and
         kept_rotation: rad, largest deviation of what was shown near the objects from what the
             demonstrations keep of it; None where it is not known.
@@ -84,6 +87,8 @@ class Certificate:
     free_roll: str | None = None
     approach: Literal["screw", "free"] = "screw"
     led_around: bool | None = None
+    success: Literal["plan", "execution"] = "plan"
+    execution: ExecutionTerms | None = None
     kept_position: float | None = None
     kept_rotation: float | None = None
     reason: str = ""
@@ -139,6 +144,7 @@ class Certificate:
             f"{self.demonstrations} demonstration{'' if self.demonstrations == 1 else 's'}, for "
             f"places drawn uniformly in each region. To succeed is to have a plan {within} the "
             f"joint limits of the robot's model{collisions}.{self._unseen()}{self._way_there()}"
+            f"{'' if self.execution is None else f' {self.execution}'}"
         )
 
     def _unseen(self) -> str:
@@ -213,6 +219,7 @@ def certificate(
         led_around: as the certificate has it.
     """
     verdict, goal, bandit = finished.verdict, setup.scenario.coverage, setup.bandit
+    executed = goal.success == "execution"
     shown: dict[str, Any] = {}
     if verdict is not None:
         spent = bool(getattr(bandit, "spend", True))
@@ -247,6 +254,8 @@ def certificate(
         free_roll=free_roll(setup.scenario),
         approach=setup.scenario.planner.approach,
         led_around=led_around,
+        success=goal.success,
+        execution=ExecutionTerms.of(setup.scenario.execution) if executed else None,
         kept_position=_largest(finished, "position"),
         kept_rotation=_largest(finished, "rotation"),
         reason=finished.reason,

@@ -27,7 +27,7 @@ from drake_screw.errors import RunDirectoryError, ScenarioError, counted
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.codec import REMEDY, load_evaluation
 from drake_screw.runs.directory import INSTANCES, SCENARIO, RunDirectory
-from drake_screw.visualization.attempt import Attempt, attempt, collided
+from drake_screw.visualization.attempt import Attempt, attempt, collided, executed
 from drake_screw.visualization.browsing import Catalogue, catalogue
 from drake_screw.visualization.rounds import cells
 
@@ -238,9 +238,14 @@ class RunReader:
         return [self.attempt(round, instance, d) for d in range(count)]
 
     def _attempt(self, round: int, instance: int, number: int) -> Attempt:
-        """One demonstration tried at an instance, cut short where the run saw a collision."""
+        """One demonstration tried at an instance, cut short where the run saw it go wrong.
+
+        Where plans are executed, it is planned for where the objects were measured.
+        """
         event = self.event(round)
-        X_WO = self.setup.area.X_WO(event.evaluation.x_y_yaw[instance])
+        ran = event.evaluation.executed
+        places = event.evaluation.x_y_yaw if ran is None else ran.measured
+        X_WO = self.setup.area.X_WO(places[instance])
         workcell, demonstration = self.setup.workcell, event.demonstrations[number]
         found = event.evaluation.outcomes[instance][number]
         if found.cause == Cause.NOT_TRIED:
@@ -250,6 +255,8 @@ class RunReader:
         names = [o.name for o in self.setup.area.objects]
         turned = self.setup.symmetries.named(demonstration, X_WO, plan.angles, names)
         tried = replace(attempt(workcell.arm, number, demonstration, X_WO, plan), turned=turned)
+        if found.cause == Cause.EXECUTION and ran is not None:
+            return executed(tried, found, str(ran.words[instance]))
         if found.cause != Cause.COLLISION:
             return tried
         return collided(tried, found, workcell, self.setup.scenario.planner.clearance)

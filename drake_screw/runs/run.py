@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from drake_screw.acquisition import (
     Event,
     Finished,
+    InstancesExecuted,
     RegionsEvaluated,
     RoundFinished,
     Status,
@@ -32,6 +33,7 @@ from drake_screw.runs.certificate import Certificate, certificate
 from drake_screw.runs.codec import FORMAT
 from drake_screw.runs.directory import SCENARIO, RunDirectory, now, versions
 from drake_screw.runs.html import certificate_html, run_html
+from drake_screw.runs.kept_executions import KeptExecutions
 from drake_screw.runs.narration import describe
 from drake_screw.runs.pictures import PICTURE, draw_round, draw_run
 from drake_screw.runs.reader import RunReader
@@ -109,7 +111,8 @@ class Run:
 
         Args:
             listeners: each is called with every event, in this order, and with `RegionsEvaluated`
-                for each batch of instances within a round, which is not yielded.
+                for each batch of instances within a round, and `InstancesExecuted` as they are
+                executed, which are not yielded.
 
         Yields:
             Events; the last is `Finished`.
@@ -122,7 +125,7 @@ class Run:
         check_parts(self.setup, self.directory)
         check_ways_around(self.setup, self.directory.record.led_around, "run", self.directory.path)
 
-        def progress(event: RegionsEvaluated) -> None:
+        def progress(event: RegionsEvaluated | InstancesExecuted) -> None:
             for listener in listeners:
                 listener(event)
 
@@ -160,6 +163,7 @@ class Run:
         if isinstance(event, RoundFinished):
             if event.round >= self.reader.rounds:
                 self.directory.add_round(event, lambda e, stem: draw_round(self.setup, e, stem))
+                KeptExecutions(self.directory.path).forget()
         elif isinstance(event, Finished):
             draw_all(self)
             rounds = self.directory.record.rounds
@@ -207,6 +211,7 @@ def new_run(scenario: Scenario, output: PathLike | None = None, **parts: Unpack[
     setup = Setup(scenario, **parts)
     for part in (setup.strategy, setup.bandit, setup.teacher, setup.ask, setup.initial):
         assert part is not None
+    _ = setup.executing
     goal = scenario.coverage
     record = RunRecord(
         format=FORMAT,

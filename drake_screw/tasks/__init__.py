@@ -2,7 +2,7 @@
 
 from drake_screw.tasks.boxes import BoxRegions, box_regions, free_axes, from_unit_box
 from drake_screw.tasks.regions import GridRegions, Regions, grid_regions
-from drake_screw.tasks.sampling import draw, draw_in_all, uniform
+from drake_screw.tasks.sampling import chance, draw, draw_in_all, uniform
 from drake_screw.tasks.symmetry import Symmetry
 from drake_screw.tasks.work_area import AXES, ObjectArea, WorkArea
 
@@ -15,6 +15,7 @@ __all__ = [
     "Symmetry",
     "WorkArea",
     "box_regions",
+    "chance",
     "draw",
     "draw_in_all",
     "free_axes",

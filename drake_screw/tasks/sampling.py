@@ -13,6 +13,7 @@ from drake_screw.tasks.regions import Regions
 from drake_screw.typing import Array
 
 CHUNK = 1024
+CHANCE = 2**31 + 3
 
 
 def uniform(
@@ -73,6 +74,22 @@ def draw(regions: Regions, region: int, *, seed: int, round: int, start: int, co
     lower, upper = regions.bounds(region)
     unit = uniform(lower.shape, seed=seed, key=(round, region), start=start, count=count)
     return lower + unit * (upper - lower)
+
+
+def chance(width: int, *, seed: int, round: int, region: int, start: int, count: int) -> Array:
+    """Further numbers from [0, 1) for instances of a region, beside those of their places.
+
+    They are the stream of `uniform` with key (round, region, CHANCE).
+
+    Args:
+        width: numbers for each.
+        seed, round, region, start, count: as of `draw`; `region` may be any number of a box.
+
+    Returns:
+        (count, width).
+    """
+    key = (round, region, CHANCE)
+    return uniform((width,), seed=seed, key=key, start=start, count=count)
 
 
 def draw_in_all(

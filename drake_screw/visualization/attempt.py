@@ -38,6 +38,7 @@ class Attempt:
         turned: how symmetric bodies are turned.
         bodies: names of the pairs of bodies that touch where the plan ended, after a collision.
         clearance: m, that they had to keep.
+        flaws: what went wrong when the plan was executed, in words.
     """
 
     arm: Arm
@@ -49,6 +50,7 @@ class Attempt:
     turned: tuple[Turned, ...] = ()
     bodies: tuple[Pair, ...] = ()
     clearance: float = 0.0
+    flaws: str = ""
 
     @property
     def guides(self) -> Array:
@@ -164,6 +166,11 @@ def collided(
     return replace(attempt, plan=plan, bodies=bodies, clearance=clearance)
 
 
+def executed(attempt: Attempt, outcome: Outcomes, flaws: str) -> Attempt:
+    """An attempt cut short where its execution, by an outcome of shape (), first went wrong."""
+    return replace(attempt, plan=cut_short(attempt.plan, outcome), flaws=flaws)
+
+
 def headline(attempt: Attempt) -> str:
     """How an attempt ended, in one sentence."""
     arm, plan, total = attempt.arm, attempt.plan, len(attempt.guides)
@@ -187,6 +194,8 @@ def headline(attempt: Attempt) -> str:
             f"fails {where}: {arm.joint_names[joint]} reaches its {which} limit, "
             f"{limit:.3f} {arm.units[joint]}".replace("-", "−")
         )
+    if attempt.cause == Cause.EXECUTION:
+        return f"fails when executed, {where}: {attempt.flaws}"
     if attempt.cause == Cause.COLLISION:
         touching = "; ".join(touch_words(pair, attempt.clearance) for pair in attempt.bodies[:2])
         return f"fails {where}: {touching or 'the arm touches something'}"
