@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from drake_screw.acquisition import Executed, InstancesExecuted
 from drake_screw.acquisition.tries import Tried, Try
-from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.assembly.ranked_plans import best_plan
 from drake_screw.assembly.stations import check_masses, check_standing, station_config
 from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import ScenarioError
 from drake_screw.execution.noise import Noise
 from drake_screw.execution.parallel import Bench, Job, Judged, judge
 from drake_screw.planning import Cause, Outcomes
@@ -24,6 +24,9 @@ from drake_screw.processes import Crew
 from drake_screw.screws import inverse
 from drake_screw.tasks import Symmetry
 from drake_screw.typing import Array
+
+if TYPE_CHECKING:
+    from drake_screw.assembly.planning_setup import PlanningSetup
 
 _MEASURES = ("position", "rotation", "displacement", "turn", "force")
 
@@ -72,18 +75,31 @@ class ExecutedTries:
 
     @contextmanager
     def begin(self, round: int, demonstrations: Sequence[Demonstration]) -> Iterator[Try]:
-        """What tries instances in a round, in processes that end with the context.
-
-        Raises:
-            ModelError: the model lacks inertia.
-            ScenarioError: an object has nothing to stand on.
-        """
+        """What tries instances in a round, in processes that end with the context."""
         config = station_config(self.setup, free_objects=True)
         with Crew(partial(Bench.of, config), self.workers) as crew:
             yield partial(self._try, crew, round, demonstrations)
 
+    def told(
+        self, progress: Callable[[InstancesExecuted], None] | None, kept: Kept | None
+    ) -> ExecutedTries:
+        """The same that tells its progress, and keeps what it finds."""
+        return replace(self, progress=progress, kept=kept)
+
     def check(self) -> None:
-        """Raises what `begin` would find out in the first process."""
+        """Refuse what cannot be executed, before a run begins.
+
+        Raises:
+            ModelError: the model lacks inertia.
+            ScenarioError: an object has nothing to stand on, or a planner was passed in.
+        """
+        if "planner" in self.setup.passed_in:
+            raise ScenarioError(
+                "plans are executed (coverage.success: execution), and those of a planner that is "
+                "passed in cannot be",
+                remedy="Leave the planner out, or write coverage.success: plan.",
+                file=self.setup.scenario.source,
+            )
         check_masses(self.setup)
         check_standing(self.setup, station_config(self.setup, free_objects=True))
 

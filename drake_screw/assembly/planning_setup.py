@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from drake_screw.assembly.executing import ExecutedTries
 from drake_screw.assembly.sanity import (
     check_reach,
     check_shapes,
@@ -24,6 +25,7 @@ from drake_screw.assembly.workcell_parts import (
     work_area,
 )
 from drake_screw.errors import ModelError
+from drake_screw.execution.noise import Noise
 from drake_screw.planning import BatchPlanner, Symmetries
 from drake_screw.planning.approach import seeds
 from drake_screw.planning.collisions import CollisionFreePlanner
@@ -49,6 +51,8 @@ class PlanningSetup:
     Args:
         scenario: the description.
     """
+
+    passed_in: tuple[str, ...] = ()
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
@@ -136,6 +140,21 @@ class PlanningSetup:
             redundancy=block.redundancy,
             free_axis=block.roll_axis,
         )
+
+    @cached_property
+    def executing(self) -> ExecutedTries | None:
+        """What executes the plans of instances; None where a plan is a success.
+
+        Raises:
+            ModelError: the model lacks inertia.
+            ScenarioError: an object has nothing to stand on, or a planner was passed in, whose
+                plans are not those that would be executed.
+        """
+        if self.scenario.coverage.success == "plan":
+            return None
+        tries = ExecutedTries(self, Noise(**dict(self.scenario.execution.noise)))
+        tries.check()
+        return tries
 
     @cached_property
     def symmetries(self) -> Symmetries:

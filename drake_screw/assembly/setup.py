@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TypedDict, Unpack
@@ -15,15 +14,13 @@ from drake_screw.acquisition import AskingRule, Evaluator, Teacher, TreeEvaluato
 from drake_screw.acquisition.first import first_place
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
-from drake_screw.assembly.executing import ExecutedTries, Kept
+from drake_screw.assembly.executing import Kept
 from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.assembly.ranked_plans import RankedPlan, best_plan
 from drake_screw.assembly.recorder import Learning, Recorder
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
-from drake_screw.errors import ScenarioError
-from drake_screw.execution.noise import Noise
 from drake_screw.planning import Cause, Outcomes, Plan, Planner, connection
 from drake_screw.plugins import find
 from drake_screw.scenario.schema import Scenario
@@ -199,8 +196,7 @@ class Setup(PlanningSetup):
         block = self.scenario.demonstrations.initial
         if isinstance(block, int):
             return block
-        format = self.scenario.teacher.format
-        return tuple(self.recorder.read(folder, format) for folder in block)
+        return tuple(self.recorder.read(folder, self.scenario.teacher.format) for folder in block)
 
     @cached_property
     def own_recorder(self) -> Recorder:
@@ -280,42 +276,12 @@ class Setup(PlanningSetup):
     def evaluator(
         self, progress: Progress | None = None, kept: Kept | None = None
     ) -> Evaluator | TreeEvaluator:
-        """What carries out the rounds of the scenario.
-
-        Args:
-            progress: called with every batch, and as its plans are executed where they are.
-            kept: remembers executions.
-        """
-        start, seed = self.workcell.start, self.scenario.seed
-        executing = self.executing
-        if executing is not None:
-            executing = replace(executing, progress=progress, kept=kept)
-        also = seed, progress, executing
+        """What carries out the rounds; `progress` is told how far, `kept` remembers executions."""
+        executing = self.executing and self.executing.told(progress, kept)
+        start, also = self.workcell.start, (self.scenario.seed, progress, executing)
         if self.tree is not None:
             return TreeEvaluator(self.planner, self.area, start, self.tree, *also)
         return Evaluator(self.planner, self.regions, start, self.strategy, *also)
-
-    @cached_property
-    def executing(self) -> ExecutedTries | None:
-        """What executes the plans of instances; None where a plan is a success.
-
-        Raises:
-            ModelError: the model lacks inertia.
-            ScenarioError: an object has nothing to stand on, or a planner was passed in, whose
-                plans are not those that would be executed.
-        """
-        if self.scenario.coverage.success == "plan":
-            return None
-        if "planner" in self.passed_in:
-            raise ScenarioError(
-                "plans are executed (coverage.success: execution), and those of a planner that is "
-                "passed in cannot be",
-                remedy="Leave the planner out, or write coverage.success: plan.",
-                file=self.scenario.source,
-            )
-        tries = ExecutedTries(self, Noise(**dict(self.scenario.execution.noise)))
-        tries.check()
-        return tries
 
     def learn(self, recording: Recording) -> Demonstration:
         """Turn a recording into a demonstration, by the kinematics of the arm it was made on.

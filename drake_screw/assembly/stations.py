@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from drake_screw.assembly.planning_setup import PlanningSetup
+from typing import TYPE_CHECKING
+
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.execution.allowed import Allowed
 from drake_screw.execution.motors import immovable
 from drake_screw.execution.parallel import StationConfig
+
+if TYPE_CHECKING:
+    from drake_screw.assembly.planning_setup import PlanningSetup
 
 
 def station_config(setup: PlanningSetup, *, free_objects: bool = False) -> StationConfig:

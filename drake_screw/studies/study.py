@@ -185,12 +185,6 @@ def new_study(
             f"{runs} runs for {len(regions)} numbers of regions",
             remedy="Give at least one run, and one number of regions.",
         )
-    if scenario.coverage.success == "execution":
-        raise ScenarioError(
-            "coverage.success: the runs of a study plan and do not execute",
-            remedy="Write coverage.success: plan, or carry out single runs with: drake-screw run",
-            file=scenario.source,
-        )
     if scenario.teacher.kind == "interactive":
         raise ScenarioError(
             "teacher.kind: an interactive teacher would be asked in every run of a study",
