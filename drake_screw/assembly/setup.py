@@ -127,7 +127,7 @@ class Setup(PlanningSetup):
         if make is not None:
             return make(self)
         block = self.scenario.coverage
-        return make_strategy(block.strategy, self.goal, **block.options)
+        return make_strategy(block.strategy, self.goal, **block.strategy_options)
 
     @cached_property
     def tree(self) -> CertifyOrSplit | None:

@@ -64,7 +64,13 @@ class CoverageBlock(Block):
     strategy: Annotated[str, PartOf("strategies")] = "eprocess"
     """the bandit that measures coverage"""
     options: Options = Field(default={})
-    """options of the strategy"""
+    """options of the strategy; where plans are executed `rank_budget` of eprocess is 0 if left out:
+    no further instances are drawn to tell which of several weak regions is the weakest"""
+
+    @property
+    def strategy_options(self) -> dict[str, Option]:
+        executed = self.success == "execution" and self.strategy == "eprocess"
+        return {"rank_budget": 0, **self.options} if executed else dict(self.options)
 
     def broken_rules(self) -> Iterator[Problem]:
         slack = 1 - self.beta

@@ -150,6 +150,20 @@ def test_what_is_executed_is_planned_for_the_measured_bowl(recordings, stand, tm
     assert len(demonstrations) == 1
 
 
+def test_no_executions_are_spent_on_which_region_is_weakest() -> None:
+    """Unless that is wanted; plans are cheap, and other strategies have no such option."""
+    options = [
+        load_scenario("scooping", changes).coverage.strategy_options
+        for changes in (
+            ["coverage.success=execution"],
+            ["coverage.success=execution", "coverage.options={rank_budget: 64}"],
+            ["coverage.success=execution", "coverage.strategy=clopper_pearson"],
+            [],
+        )
+    ]
+    assert options == [{"rank_budget": 0}, {"rank_budget": 64}, {}, {}]
+
+
 def test_an_interrupted_round_goes_on_where_it_was_and_ends_the_same(
     recordings, stand, tmp_path
 ) -> None:
