@@ -17,7 +17,7 @@ from multiprocessing import get_context, parent_process
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from threading import Thread
-from typing import Any, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 from drake_screw.errors import DrakeScrewError
 
@@ -57,17 +57,52 @@ def share_out(
     Raises:
         WorkerLost: a process was killed. Whatever a job raises ends the work, too.
     """
-    workers = min(workers or len(os.sched_getaffinity(0)), len(jobs))
-    if workers <= 1:
-        if jobs:
-            tool = build()
+    with Crew(build, min(workers or processors(), len(jobs))) as crew:
+        yield from crew.share(work, jobs)
+
+
+def processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+class Crew(Generic[_Tool]):
+    """Processes that stay for several lots of jobs; a context manager, which ends them.
+
+    Args:
+        build: makes what the work needs, once in each process; as for `share_out`.
+        workers: processes; as many as processors if None. With 1 everything is done in this one.
+    """
+
+    def __init__(self, build: Callable[[], _Tool], workers: int | None = None) -> None:
+        self._build, self._workers = build, processors() if workers is None else workers
+        self._pool: ProcessPoolExecutor | None = None
+        self._tools: list[_Tool] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
+
+    def share(
+        self, work: Callable[[_Tool, _Job], _Answer], jobs: Sequence[_Job]
+    ) -> Iterator[tuple[int, _Answer]]:
+        """Do jobs; takes, yields and raises what `share_out` does."""
+        if len(jobs) == 0:
+            return
+        if self._workers <= 1:
+            if not self._tools:
+                self._tools.append(self._build())
             for place, job in enumerate(jobs):
-                yield place, work(tool, job)
-        return
-    pool = ProcessPoolExecutor(workers, get_context("spawn"), _begin, (build,))
-    with pool:
+                yield place, work(self._tools[0], job)
+            return
+        if self._pool is None:
+            context = get_context("spawn")
+            self._pool = ProcessPoolExecutor(self._workers, context, _begin, (self._build,))
         with _ctrl_c_held():
-            places = {pool.submit(_work, work, job): place for place, job in enumerate(jobs)}
+            places = {self._pool.submit(_work, work, job): place for place, job in enumerate(jobs)}
         try:
             for done in as_completed(places):
                 yield places[done], done.result()
@@ -77,7 +112,8 @@ def share_out(
                 remedy="Give fewer --workers.",
             ) from error
         finally:
-            pool.shutdown(cancel_futures=True)
+            for future in places:
+                future.cancel()
 
 
 def _begin(build: Callable[[], Any]) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from drake_screw.processes import WorkerLost, share_out
+from drake_screw.processes import Crew, WorkerLost, share_out
 
 
 def tool(start: int) -> list[int]:
@@ -40,6 +40,23 @@ def test_every_job_is_done_once_and_keeps_its_place(workers: int) -> None:
     done = dict(share_out(add, jobs, build=partial(tool, 100), workers=workers))
     assert {place: total for place, (total, _) in done.items()} == {j: 100 + j for j in jobs}
     processes = {process for _, process in done.values()}
+    assert len(processes) <= workers
+    assert (os.getpid() in processes) == (workers == 1)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_crew_stays_for_several_lots(workers: int) -> None:
+    with Crew(partial(tool, 100), workers) as crew:
+        lots = [dict(crew.share(add, range(first, first + 6))) for first in (0, 6)]
+        with pytest.raises(ValueError, match="job 3"):
+            list(crew.share(fail, range(8)))
+        lots.append(dict(crew.share(add, [7])))
+    assert [{j: total for j, (total, _) in lot.items()} for lot in lots] == [
+        {j: 100 + j for j in range(6)},
+        {j: 106 + j for j in range(6)},
+        {0: 107},
+    ]
+    processes = {process for lot in lots for _, process in lot.values()}
     assert len(processes) <= workers
     assert (os.getpid() in processes) == (workers == 1)
 

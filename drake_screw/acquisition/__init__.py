@@ -7,6 +7,7 @@ from drake_screw.acquisition.events import (
     Evaluation,
     Event,
     Finished,
+    InstancesExecuted,
     RegionsEvaluated,
     RoundFinished,
     RoundStarted,
@@ -19,6 +20,7 @@ from drake_screw.acquisition.recorded_teacher import RecordedTeacher
 from drake_screw.acquisition.suggestion import random_suggestion, suggest
 from drake_screw.acquisition.teacher import Lesson, Teacher
 from drake_screw.acquisition.tree_evaluator import TreeEvaluator
+from drake_screw.acquisition.tries import Executed, Executing
 from drake_screw.acquisition.usable_lessons import UsableLessons
 
 __all__ = [
@@ -28,7 +30,10 @@ __all__ = [
     "Evaluation",
     "Evaluator",
     "Event",
+    "Executed",
+    "Executing",
     "Finished",
+    "InstancesExecuted",
     "Lesson",
     "RecordedTeacher",
     "RegionsEvaluated",

@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_screw.acquisition.tries import Executed
 from drake_screw.bandits import Cell, Verdict
 from drake_screw.demonstrations import Demonstration, Recording
 from drake_screw.planning import Outcomes
@@ -34,16 +35,18 @@ class Evaluation:
         outcomes: (N, D), one column for each demonstration in hand.
         frontier: the cells of the tree in which the round ended, where the partition refines
             itself; `region` counts them.
+        executed: what executing the plans found; None where a plan is a success.
     """
 
     coordinates: Array
     region: NDArray[np.int64]
     outcomes: Outcomes
     frontier: tuple[Cell, ...] = ()
+    executed: Executed | None = None
 
     @property
     def failed(self) -> NDArray[np.bool_]:
-        """(N,) no demonstration gives a plan."""
+        """(N,) no demonstration gives a plan, or one that is executed as it should be."""
         return ~self.outcomes.any_success
 
     def partition(self, start: Regions) -> Regions:
@@ -93,6 +96,15 @@ class RegionsEvaluated:
     round: int
     samples: NDArray[np.int64]
     failures: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class InstancesExecuted:
+    """So many of the plans that a round's strategy asked for at a time have been executed."""
+
+    round: int
+    done: int
+    total: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +159,7 @@ class Finished:
 Event = (
     RoundStarted
     | RegionsEvaluated
+    | InstancesExecuted
     | RoundFinished
     | DemonstrationRequested
     | DemonstrationAdded

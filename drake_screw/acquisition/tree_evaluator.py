@@ -6,10 +6,11 @@ import numpy as np
 
 from drake_screw.acquisition.events import Evaluation, RegionsEvaluated
 from drake_screw.acquisition.grid_evaluator import BATCH, Progress
+from drake_screw.acquisition.tries import Executed, Executing, Tried, Try, begin_tries, joined
 from drake_screw.bandits import Cell, CertifyOrSplit, TreeVerdict, Verdict, cell_number
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Outcomes, Planner, concatenate
-from drake_screw.tasks import WorkArea, from_unit_box, uniform
+from drake_screw.tasks import WorkArea, chance, from_unit_box, uniform
 from drake_screw.typing import Array
 
 
@@ -26,6 +27,7 @@ class TreeEvaluator:
         tree: decides where to draw and when enough is known.
         seed: of the run.
         progress: called with every batch's event, which has the counts of the whole area.
+        executing: as of `Evaluator`.
 
     Raises:
         ValueError: the tree has another number of axes.
@@ -39,6 +41,7 @@ class TreeEvaluator:
         tree: CertifyOrSplit,
         seed: int,
         progress: Progress | None = None,
+        executing: Executing | None = None,
     ) -> None:
         free = int(area.free.sum())
         if tree.dimension != free:
@@ -49,6 +52,7 @@ class TreeEvaluator:
         self._tree = tree
         self._seed = seed
         self._progress = progress
+        self._executing = executing
         self._frontier: tuple[Cell, ...] = ()
 
     def remember(self, evaluation: Evaluation) -> None:
@@ -79,8 +83,11 @@ class TreeEvaluator:
         """
         tree = self._tree
         before = tree.advance(self._frontier) if self._frontier else tree.start()
-        pulls = _Pulls(self, round, demonstrations)
-        found = tree.decide(pulls, before)
+        with begin_tries(
+            self._planner, self._executing, self._area, self._q_start, round, demonstrations
+        ) as tries:
+            pulls = _Pulls(self, round, tries)
+            found = tree.decide(pulls, before)
         self._frontier = found.frontier
         return pulls.evaluation(found.frontier), self._verdict(found, pulls.looks)
 
@@ -109,16 +116,17 @@ class TreeEvaluator:
 class _Pulls:
     """The tree's source of samples, which remembers all it drew."""
 
-    def __init__(
-        self, evaluator: TreeEvaluator, round: int, demonstrations: tuple[Demonstration, ...]
-    ) -> None:
+    def __init__(self, evaluator: TreeEvaluator, round: int, tries: Try) -> None:
         self._by = evaluator
         self._round = round
-        self._demonstrations = demonstrations
+        self._try = tries
+        self._width = 0 if evaluator._executing is None else evaluator._executing.width
         self._drawn: dict[int, int] = {}
         self._failures = 0
         self._points: list[Array] = [np.empty((0, evaluator._tree.dimension))]
-        self._outcomes: list[Outcomes] = [self._plan(self._points[0])]
+        outcomes, executed = self._tried(self._points[0], np.empty((0, self._width)))
+        self._outcomes: list[Outcomes] = [outcomes]
+        self._executed: list[Executed | None] = [executed]
         self.looks = 0
 
     def __call__(self, lower: Array, upper: Array, count: int) -> tuple[Array, Array]:
@@ -129,7 +137,12 @@ class _Pulls:
         key = (self._round, number)
         unit = uniform(lower.shape, seed=self._by._seed, key=key, start=start, count=count)
         points = lower + unit * (upper - lower)
-        failed = [self._batch(points[i : i + BATCH]) for i in range(0, count, BATCH)]
+        numbers = chance(
+            self._width, seed=self._by._seed, round=self._round, region=number,
+            start=start, count=count,
+        )  # fmt: skip
+        batches = [slice(i, i + BATCH) for i in range(0, count, BATCH)]
+        failed = [self._batch(points[some], numbers[some]) for some in batches]
         return points, np.concatenate(failed)
 
     def evaluation(self, frontier: tuple[Cell, ...]) -> Evaluation:
@@ -138,12 +151,15 @@ class _Pulls:
         for j, cell in enumerate(frontier):
             region[((points >= cell.lower) & (points < cell.upper)).all(axis=1)] = j
         coordinates = from_unit_box(self._by._area, points)
-        return Evaluation(coordinates, region, concatenate(self._outcomes), frontier)
+        return Evaluation(
+            coordinates, region, concatenate(self._outcomes), frontier, joined(self._executed)
+        )
 
-    def _batch(self, points: Array) -> Array:
-        outcomes = self._plan(points)
+    def _batch(self, points: Array, numbers: Array) -> Array:
+        outcomes, executed = self._tried(points, numbers)
         self._points.append(points)
         self._outcomes.append(outcomes)
+        self._executed.append(executed)
         failed = ~outcomes.any_success
         self._failures += int(failed.sum())
         if self._by._progress is not None:
@@ -153,6 +169,5 @@ class _Pulls:
             )
         return failed
 
-    def _plan(self, points: Array) -> Outcomes:
-        X_WO = self._by._area.X_WO(from_unit_box(self._by._area, points))
-        return self._by._planner.any_success(self._demonstrations, X_WO, self._by._q_start)
+    def _tried(self, points: Array, numbers: Array) -> Tried:
+        return self._try(from_unit_box(self._by._area, points), numbers)

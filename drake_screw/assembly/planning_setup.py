@@ -9,6 +9,7 @@ import numpy as np
 
 from drake_screw.acquisition.nearest_arm import nearest_first
 from drake_screw.assembly.arm_setup import ArmSetup
+from drake_screw.assembly.executing import ExecutedTries
 from drake_screw.assembly.work_area_checks import check_reach, check_room
 from drake_screw.assembly.workcell_parts import (
     object_configs,
@@ -17,6 +18,7 @@ from drake_screw.assembly.workcell_parts import (
     table_config,
     work_area,
 )
+from drake_screw.execution.noise import Noise
 from drake_screw.planning import BatchPlanner, Outcomes, Planner, Symmetries
 from drake_screw.planning.arms import ArmsPlanner
 from drake_screw.planning.collisions import CollisionFreePlanner
@@ -43,6 +45,8 @@ class PlanningSetup:
     Args:
         scenario: the description.
     """
+
+    passed_in: tuple[str, ...] = ()
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
@@ -107,10 +111,14 @@ class PlanningSetup:
         lines = (line for one in self.arms for line in one.arm.assumptions)
         return tuple(dict.fromkeys(lines))
 
+    @property
+    def shoulders(self) -> Array:
+        """p_WS (A, 3) m, of each arm."""
+        return np.stack([one.arm.screw_chain().shoulder for one in self.arms])
+
     def nearest_arm(self, coordinates: Array) -> ArmSetup:
         """The arm whose shoulder is nearest to the first object of an instance (k, c)."""
-        shoulders = np.stack([one.arm.screw_chain().shoulder for one in self.arms])
-        return self.arms[int(nearest_first(shoulders, self.area.X_WO(coordinates))[0])]
+        return self.arms[int(nearest_first(self.shoulders, self.area.X_WO(coordinates))[0])]
 
     @property
     def srdf(self) -> dict[str, Path]:
@@ -144,6 +152,21 @@ class PlanningSetup:
     def batch_planner(self) -> BatchPlanner:
         """The planner that watches joint limits and reach."""
         return self.arms[0].batch_planner
+
+    @cached_property
+    def executing(self) -> ExecutedTries | None:
+        """What executes the plans of instances; None where a plan is a success.
+
+        Raises:
+            ModelError: the model lacks inertia.
+            ScenarioError: an object has nothing to stand on, or a planner was passed in, whose
+                plans are not those that would be executed.
+        """
+        if self.scenario.coverage.success == "plan":
+            return None
+        tries = ExecutedTries(self, Noise(**dict(self.scenario.execution.noise)))
+        tries.check()
+        return tries
 
     @property
     def symmetries(self) -> Symmetries:

@@ -14,6 +14,7 @@ from drake_screw.acquisition.first import first_place
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.acquisition.simulated import Motion
 from drake_screw.assembly.arms_recorder import AnyRecorder, ArmsRecorder
+from drake_screw.assembly.executing import Kept
 from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.assembly.ranked_plans import RankedPlan, best_plan
@@ -70,11 +71,8 @@ class Setup(PlanningSetup):
         super().__init__(scenario)
         self._parts = parts
         asks = scenario.teacher.kind == "interactive"
-        self.passed_in = tuple(
-            name
-            for name, part in parts.items()
-            if part is not None and not (name == "teacher" and asks)
-        )
+        given = [name for name, part in parts.items() if part is not None]
+        self.passed_in = tuple(name for name in given if not (name == "teacher" and asks))
 
     @cached_property
     def planner(self) -> Planner:
@@ -128,7 +126,7 @@ class Setup(PlanningSetup):
         if make is not None:
             return make(self)
         block = self.scenario.coverage
-        return make_strategy(block.strategy, self.goal, **block.options)
+        return make_strategy(block.strategy, self.goal, **block.strategy_options)
 
     @cached_property
     def tree(self) -> CertifyOrSplit | None:
@@ -188,16 +186,14 @@ class Setup(PlanningSetup):
     @cached_property
     def first(self) -> Array:
         """(k, c) where the first demonstration is asked for; NaN what is drawn at random."""
-        shoulders = [one.arm.screw_chain().shoulder for one in self.arms]
-        return first_place(self.scenario.demonstrations.first, self.area, shoulders)
+        return first_place(self.scenario.demonstrations.first, self.area, self.shoulders)
 
     @cached_property
     def initial(self) -> int | tuple[Recording, ...]:
         """Recordings to start from, or how many to ask for."""
-        block = self.scenario.demonstrations.initial
+        block, format = self.scenario.demonstrations.initial, self.scenario.teacher.format
         if isinstance(block, int):
             return block
-        format = self.scenario.teacher.format
         return tuple(self.recorder.read(folder, format) for folder in block)
 
     @cached_property
@@ -275,12 +271,15 @@ class Setup(PlanningSetup):
         names = [o.name for o in self.area.objects]
         return best_plan(ways(self.arms, start), demonstrations, X_WO, names, most)
 
-    def evaluator(self, progress: Progress | None = None) -> Evaluator | TreeEvaluator:
-        """What carries out the rounds of the scenario; `progress` is called with every batch."""
-        start, seed = self.start, self.scenario.seed
+    def evaluator(
+        self, progress: Progress | None = None, kept: Kept | None = None
+    ) -> Evaluator | TreeEvaluator:
+        """What carries out the rounds; `progress` is told how far, `kept` remembers executions."""
+        executing = self.executing and self.executing.told(progress, kept)
+        start, also = self.start, (self.scenario.seed, progress, executing)
         if self.tree is not None:
-            return TreeEvaluator(self.planner, self.area, start, self.tree, seed, progress)
-        return Evaluator(self.planner, self.regions, start, self.strategy, seed, progress)
+            return TreeEvaluator(self.planner, self.area, start, self.tree, *also)
+        return Evaluator(self.planner, self.regions, start, self.strategy, *also)
 
     def learn(self, recording: Recording) -> Demonstration:
         """Turn a recording into a demonstration, by the kinematics of the arm it was made on.

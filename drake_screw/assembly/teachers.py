@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from drake_screw.acquisition import RecordedTeacher, Teacher
 from drake_screw.acquisition.nearest_arm import NearestArm
 from drake_screw.acquisition.simulated import SimulatedTeacher
@@ -21,8 +19,7 @@ def simulated(setup: Setup) -> Teacher:
     each = [SimulatedTeacher(one.workcell, setup.area, setup.motion, free_axis) for one in arms]
     if len(each) == 1:
         return each[0]
-    shoulders = np.stack([one.arm.screw_chain().shoulder for one in arms])
-    return NearestArm(tuple(one.name for one in arms), each, shoulders, setup.area)
+    return NearestArm(tuple(one.name for one in arms), each, setup.shoulders, setup.area)
 
 
 def recorded(setup: Setup) -> Teacher:

@@ -111,7 +111,9 @@ def table_config(scenario: Scenario) -> TableConfig | None:
 
 def object_configs(scenario: Scenario) -> tuple[ObjectConfig, ...]:
     """Shapes of the objects."""
-    return tuple(ObjectConfig(o.name, o.radius, o.height) for o in scenario.objects)
+    return tuple(
+        ObjectConfig(o.name, o.radius, o.height, o.mass, o.friction) for o in scenario.objects
+    )
 
 
 def obstacle_configs(scenario: Scenario) -> tuple[ObstacleConfig, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,14 +17,18 @@ from drake_screw.acquisition import (
     DemonstrationRequested,
     Event,
     Finished,
+    InstancesExecuted,
     RegionsEvaluated,
     RoundFinished,
     RoundStarted,
 )
 from drake_screw.bandits import Verdict
+from drake_screw.commands.countdown import Pace
 from drake_screw.runs.narration import describe
 from drake_screw.runs.summary import RunSummary
 from drake_screw.tasks import Regions
+
+_log = logging.getLogger(__name__)
 
 _ROWS = 24
 
@@ -43,6 +48,7 @@ class RunConsole:
         self._regions, self._quiet = regions, quiet
         self._live = _progress(console, hidden=quiet)
         self._task = self._live.add_task("starting", total=None, detail="")
+        self._terminal, self._pace = console.is_terminal, Pace()
 
     def __enter__(self) -> RunConsole:
         self._live.start()
@@ -57,6 +63,11 @@ class RunConsole:
         match event:
             case RegionsEvaluated():
                 self._live.update(self._task, detail=detail(event))
+            case InstancesExecuted():
+                words = f"executed {self._pace.of(event.done, event.total)}"
+                self._live.update(self._task, detail=words)
+                if not self._terminal and not self._quiet and self._pace.due():
+                    _log.info("round %d: %s", event.round + 1, words)
             case RoundStarted():
                 words = describe(event, self._regions)
                 self._live.update(self._task, description=words, detail="")
@@ -69,7 +80,7 @@ class RunConsole:
 
 def show_event(event: Event, regions: Regions, console: Console) -> None:
     """An event in words, and for a round its table; nothing where there is nothing to keep."""
-    if isinstance(event, RegionsEvaluated | RoundStarted | Finished):
+    if isinstance(event, RegionsEvaluated | InstancesExecuted | RoundStarted | Finished):
         return
     console.print(Text(describe(event, regions)))
     if isinstance(event, RoundFinished):
@@ -81,6 +92,8 @@ def show_summary(summary: RunSummary, console: Console) -> None:
     console.print(certificate_panel(summary.statement, certified=summary.certified))
     if summary.collisions is not None and summary.collisions.collisions:
         console.print(Text(f"in the last round {summary.collisions}"), soft_wrap=True)
+    if summary.executions is not None:
+        console.print(Text(f"in the last round {summary.executions}"), soft_wrap=True)
     console.print(Text(f"run directory: {summary.directory}"), soft_wrap=True)
 
 

@@ -27,6 +27,10 @@ def execute(
     instance: Annotated[
         list[str] | None, instance_option("Just one, with the objects there.")
     ] = None,
+    free_objects: Annotated[
+        bool,
+        typer.Option("--free-objects", help="Let objects be pushed, and report how far they are."),
+    ] = False,
     graphviz: Annotated[
         bool, typer.Option("--graphviz", help="Print the simulated diagram for dot, and stop.")
     ] = False,
@@ -37,7 +41,9 @@ def execute(
     """Simulate plans of a run, and check what the robot does.
 
     With the arm's dynamics and controllers. Reports joint limits, velocities, tracking, deviation
-    from the screws and contacts; writes a table and a recording that plays in the browser.
+    from the screws and contacts; writes a table and a recording that plays in the browser. What
+    is allowed is in the scenario's block execution. Objects are locked in place unless they are
+    free; an object then has mass and friction, and stands on what is under it.
 
     Exit code 0: something was executed as planned. 1: nothing was. 2: bad input.
     """
@@ -53,12 +59,21 @@ def execute(
         )
     output = Output(json)
     place = parse_instance(instance) if instance else None
+    from drake_screw.commands.countdown import Countdown
     from drake_screw.runs import executions
 
     if graphviz:
-        print(executions.station_graphviz(run))
+        print(executions.station_graphviz(run, free_objects=free_objects))
         return
     count = 2 if per_region is None else per_region
-    done = executions.execute(run, per_region=count, instance=place, workers=workers)
+    with Countdown("executed", output.console) as countdown:
+        done = executions.execute(
+            run,
+            per_region=count,
+            instance=place,
+            workers=workers,
+            free_objects=free_objects,
+            progress=countdown,
+        )
     output.present(done)
     raise typer.Exit(0 if done.summary.flawless else 1)

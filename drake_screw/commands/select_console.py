@@ -13,8 +13,9 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-from drake_screw.acquisition import RegionsEvaluated
+from drake_screw.acquisition import InstancesExecuted, RegionsEvaluated
 from drake_screw.commands.console import certificate_panel, detail, round_table
+from drake_screw.commands.countdown import Pace
 from drake_screw.commands.output import Output
 from drake_screw.runs.selection import RegionRate, Selection
 from drake_screw.runs.selection_events import Step, Tried
@@ -41,6 +42,7 @@ class SelectConsole:
             disable=not console.is_terminal,
         )
         self._task = self._live.add_task("starting", total=None, detail="")
+        self._pace = Pace()
 
     def __enter__(self) -> SelectConsole:
         self._live.start()
@@ -49,7 +51,7 @@ class SelectConsole:
     def __exit__(self, *_: object) -> None:
         self._live.stop()
 
-    def __call__(self, event: Step | RegionsEvaluated | Tried) -> None:
+    def __call__(self, event: Step | RegionsEvaluated | InstancesExecuted | Tried) -> None:
         """Show an event."""
         match event:
             case Step():
@@ -60,6 +62,9 @@ class SelectConsole:
                     total=event.total,
                     detail="",
                 )
+            case InstancesExecuted():
+                words = f"executed {self._pace.of(event.done, event.total)}"
+                self._live.update(self._task, detail=words)
             case RegionsEvaluated():
                 self._live.update(self._task, detail=detail(event))
             case Tried():

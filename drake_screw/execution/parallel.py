@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 
+from drake_screw.execution.allowed import Allowed, said
 from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
-from drake_screw.execution.timing import TimeLimits, time_plan
+from drake_screw.execution.timing import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Plan
 from drake_screw.processes import share_out
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
@@ -26,10 +27,16 @@ class Job:
     Attributes:
         plan: one that succeeded.
         X_WO: (k, 4, 4) where the objects are.
+        joint_offset: (n,) rad or m, how far the arm's joints are beyond what its encoders say; None
+            for not at all.
+        wanted: (g, 4, 4) where guiding poses ought to be, given where the objects are; the plan's
+            own if None.
     """
 
     plan: Plan
     X_WO: Array
+    joint_offset: Array | None = None
+    wanted: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -39,6 +46,8 @@ class StationConfig:
     Attributes:
         robot, table, objects, obstacles: of the workcell.
         limits: how fast plans are executed.
+        free_objects: whether objects can be pushed.
+        allowed: what an execution may do and be flawless.
     """
 
     robot: RobotConfig
@@ -46,16 +55,39 @@ class StationConfig:
     objects: tuple[ObjectConfig, ...] = ()
     obstacles: tuple[ObstacleConfig, ...] = ()
     limits: TimeLimits = field(default_factory=TimeLimits)
+    free_objects: bool = False
+    allowed: Allowed = field(default_factory=Allowed)
 
     def build(self) -> Station:
         """The station."""
         return build_station(
-            self.robot, table=self.table, objects=self.objects, obstacles=self.obstacles
+            self.robot,
+            table=self.table,
+            objects=self.objects,
+            obstacles=self.obstacles,
+            free_objects=self.free_objects,
         )
 
 
+@dataclass(frozen=True)
+class Bench:
+    """What a process executes plans with."""
+
+    config: StationConfig
+    station: Station
+
+    @classmethod
+    def of(cls, config: StationConfig) -> Bench:
+        """Built for this process."""
+        return cls(config, config.build())
+
+
 def execute_all(
-    config: StationConfig, jobs: Sequence[Job], *, workers: int | None = None
+    config: StationConfig,
+    jobs: Sequence[Job],
+    *,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Execution, ...]:
     """Time and simulate plans.
 
@@ -63,6 +95,7 @@ def execute_all(
         config: the station that each process builds once.
         jobs: what to do.
         workers: number of processes; as many as processors if None, none but this one if 1.
+        progress: called with how many are done and how many there are, at first with none.
 
     Returns:
         The execution of each job, in order, thinned out.
@@ -70,21 +103,74 @@ def execute_all(
     Raises:
         WorkerLost: a process was killed.
     """
-    shared = share_out(_execute, jobs, build=partial(_bench, config), workers=workers)
-    done = dict(shared)
-    return tuple(done[place] for place in range(len(jobs)))
+    tell = progress or (lambda done, total: None)
+    tell(0, len(jobs))
+    executed: dict[int, Execution] = {}
+    for place, done in share_out(carry_out, jobs, build=partial(Bench.of, config), workers=workers):
+        executed[place] = done
+        tell(len(executed), len(jobs))
+    return tuple(executed[place] for place in range(len(jobs)))
 
 
-def _bench(config: StationConfig) -> tuple[Station, TimeLimits]:
-    return config.build(), config.limits
+def carry_out(bench: Bench, job: Job) -> Execution:
+    """Time and simulate one plan; its logs are thinned out."""
+    done, _ = _simulated(bench, job)
+    return done.thinned(KEPT)
 
 
-def _execute(bench: tuple[Station, TimeLimits], job: Job) -> Execution:
-    station, limits = bench
-    poses = np.concatenate([station.arm.pose(job.plan.q[:1]), job.plan.guides])
-    timed = time_plan(job.plan, poses, station.arm, limits)
-    done = simulate(station, timed, job.X_WO)
-    kept = np.append(np.arange(0, len(done.t) - 1, KEPT), len(done.t) - 1)
-    return replace(
-        done, t=done.t[kept], q=done.q[kept], v=done.v[kept], q_desired=done.q_desired[kept]
+@dataclass(frozen=True)
+class Judged:
+    """What an execution came to, in few numbers.
+
+    Attributes:
+        flaw: what explains most of what went wrong, a `Flaw` by its text; "" where nothing did.
+        words: all that went wrong.
+        segment: the screw segment in which that was first seen, from 0; the last one if nothing.
+        fraction: how much of that segment was done, 0 to 1.
+        position, rotation: m and rad, greatest distance of the end effector from where it ought to
+            be at that time.
+        displacement, turn: m and rad, that an object was moved at most.
+        force: N, greatest with which the robot touched something.
+    """
+
+    flaw: str
+    words: str
+    segment: int
+    fraction: float
+    position: float
+    rotation: float
+    displacement: float
+    turn: float
+    force: float
+
+
+def judge(bench: Bench, job: Job) -> Judged:
+    """Time and simulate one plan, and say how it went."""
+    done, timed = _simulated(bench, job)
+    report = done.report
+    flaw = report.flaws[0] if report.flaws else None
+    end = timed.duration if flaw is None or flaw.time is None else flaw.time
+    at = timed.at(end)
+    return Judged(
+        flaw="" if flaw is None else flaw.kind.value,
+        words=said(report.flaws),
+        segment=at.segment,
+        fraction=min(max(at.s, 0.0), 1.0),
+        position=report.tracking.position,
+        rotation=report.tracking.rotation,
+        displacement=max((o.position for o in report.moved), default=0.0),
+        turn=max((o.rotation for o in report.moved), default=0.0),
+        force=report.force,
     )
+
+
+def _simulated(bench: Bench, job: Job) -> tuple[Execution, TimedPlan]:
+    station, plan, limits = bench.station, job.plan, bench.config.limits
+    start = station.arm.pose(plan.q[:1])
+    timed = time_plan(plan, np.concatenate([start, plan.guides]), station.arm, limits)
+    wanted = None if job.wanted is None else timed.moved(np.concatenate([start, job.wanted]))
+    done = simulate(
+        station, timed, job.X_WO,
+        joint_offset=job.joint_offset, wanted=wanted, allowed=bench.config.allowed,
+    )  # fmt: skip
+    return done, timed

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 from pydrake.geometry import Meshcat, MeshcatAnimation, MeshcatParams, Rgba
+from pydrake.math import RigidTransform
 
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.station import Station, build_station
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.screws import normalized
 from drake_screw.typing import Array
 
 FRAMES = 20  # a second
@@ -25,6 +27,7 @@ def recording_html(
     table: TableConfig | None = None,
     objects: Sequence[ObjectConfig] = (),
     obstacles: Sequence[ObstacleConfig] = (),
+    free_objects: bool = False,
 ) -> str:
     """A self-contained Meshcat page that plays executions, over and over.
 
@@ -33,14 +36,19 @@ def recording_html(
     Args:
         executions: each with the poses X_WO (k, 4, 4) of the objects, and the robot with the arm
             that moved: all of one model.
-        table, objects, obstacles: as the executions had them.
+        table, objects, obstacles, free_objects: as the executions had them.
     """
     meshcat = Meshcat(MeshcatParams(host="localhost"))
     stations: dict[tuple[str, ...], Station] = {}
     for _, _, robot in executions:
         if robot.joints not in stations:
             stations[robot.joints] = build_station(
-                robot, table=table, objects=objects, obstacles=obstacles, meshcat=meshcat
+                robot,
+                table=table,
+                objects=objects,
+                obstacles=obstacles,
+                free_objects=free_objects,
+                meshcat=meshcat,
             )
     for path in ("/Grid", "/Axes"):
         meshcat.SetProperty(path, "visible", False)
@@ -66,6 +74,9 @@ def recording_html(
             k = min(int(np.searchsorted(execution.t, t)), len(execution.t) - 1)
             positions[station.columns] = execution.q[k]
             station.plant.SetPositions(context, positions)
+            if execution.X_WO is not None:
+                for body, X in zip(station.objects, execution.X_WO[k], strict=True):
+                    station.plant.SetFreeBodyPose(context, body, RigidTransform(normalized(X)))
             root.SetTime(began + t)
             station.diagram.ForcedPublish(root)
         ended = began + float(execution.t[-1]) + PAUSE

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from drake_screw.execution.allowed import Allowed, Flaw, Flawed
+from drake_screw.execution.free_objects import Displacement
 from drake_screw.execution.status import ExecutionStatus, Phase
 from drake_screw.execution.timing import TimedPlan
 from drake_screw.planning.contract import CHARACTERISTIC_LENGTH
@@ -69,6 +71,9 @@ class ExecutionReport:
         contacts: of the robot with anything, itself included.
         final: of the measured end effector from the last guiding pose, when it ended.
             All three without the roll about an axis where the plan leaves it free.
+        moved: how far objects were moved that can be pushed.
+        allowed: what it may do and be flawless.
+        since: s, when it first left limits, was too fast or too far off, as far as it was.
     """
 
     status: ExecutionStatus
@@ -84,16 +89,52 @@ class ExecutionReport:
     screws: tuple[Deviation, ...]
     contacts: tuple[Contact, ...]
     final: Deviation
+    moved: tuple[Displacement, ...] = ()
+    allowed: Allowed = field(default_factory=Allowed)
+    since: Mapping[Flaw, float] = field(default_factory=dict)
 
     @property
     def flawless(self) -> bool:
-        """Done, within all joint limits and velocities, and nothing touched."""
-        return (
-            self.status.phase is Phase.DONE
-            and not self.outside
-            and self.velocity <= 1.0
-            and not self.contacts
-        )
+        """Done, within all joint limits and velocities, and what else is `Allowed`."""
+        return not self.flaws
+
+    @property
+    def force(self) -> float:
+        """N, greatest with which the robot touched something; 0 where it touched nothing."""
+        return max((contact.force for contact in self.contacts), default=0.0)
+
+    @property
+    def pushed(self) -> tuple[Displacement, ...]:
+        """Objects that were moved farther than is allowed."""
+        most, turn = self.allowed.displacement, self.allowed.turn
+        return tuple(o for o in self.moved if o.position > most or o.rotation > turn)
+
+    @property
+    def off(self) -> bool:
+        """Whether the end effector was farther from where it ought to be than is allowed."""
+        most, turn = self.allowed.position, self.allowed.rotation
+        return self.tracking.position > most or self.tracking.rotation > turn
+
+    @property
+    def flaws(self) -> tuple[Flawed, ...]:
+        """What was not as it should be, what explains most first; none where all was."""
+        most = self.allowed.contact_force
+        touched = [c for c in self.contacts if c.force > most or most == 0.0]
+        found = [Flawed(Flaw.PUSHED, f"the {o}", o.time) for o in self.pushed]
+        found += [Flawed(Flaw.CONTACT, str(c), c.time) for c in touched]
+        if self.outside:
+            words = "; ".join(f"{name} leaves its limits" for name in self.outside)
+            found.append(Flawed(Flaw.OUTSIDE_LIMITS, words, self.since.get(Flaw.OUTSIDE_LIMITS)))
+        if self.velocity > 1.0:
+            words = f"a joint moves at {self.velocity:.2f} times its velocity limit"
+            found.append(Flawed(Flaw.TOO_FAST, words, self.since.get(Flaw.TOO_FAST)))
+        if self.status.phase is not Phase.DONE:
+            found.append(Flawed(Flaw.NOT_DONE, str(self.status), self.time))
+        if self.off:
+            far, turned = 1e3 * self.tracking.position, 1e3 * self.tracking.rotation
+            words = f"the end effector gets {far:.1f} mm and {turned:.0f} mrad off its way"
+            found.append(Flawed(Flaw.OFF, words, self.since.get(Flaw.OFF)))
+        return tuple(found)
 
 
 def make_report(
@@ -104,22 +145,30 @@ def make_report(
     v: Array,
     status: ExecutionStatus,
     contacts: Sequence[Contact],
+    moved: Sequence[Displacement] = (),
+    allowed: Allowed | None = None,
 ) -> ExecutionReport:
     """Measure a plan's execution.
 
     Args:
-        plan: what was to be done, from time 0.
+        plan: what ought to be done, from time 0.
         arm: that did it.
         t: (m,) s, times of the samples.
-        q, v: (m, n) measured.
+        q, v: (m, n) where it was.
         status: at the end.
         contacts: that were seen.
+        moved: how far objects were moved.
+        allowed: what it may do and be flawless.
     """
+    allowed = allowed or Allowed()
     margin = arm.margin(q)
     least = margin.min(axis=0)
     compared = comparable(least, arm.upper - arm.lower, arm.slides)
     joint = int(np.argmin(compared))
     outside = tuple(n for n, kept in zip(arm.joint_names, least, strict=True) if kept < -YIELDS)
+    fast = np.abs(v) / arm.velocity_limits
+    since = _since(Flaw.OUTSIDE_LIMITS, t, -margin / YIELDS)
+    since |= _since(Flaw.TOO_FAST, t, fast)
     tracking, screws, final = Deviation(), [], Deviation()
     if plan.segments:
         times = np.unique(np.round(t / EVERY).astype(int), return_index=True)[1]
@@ -140,7 +189,10 @@ def make_report(
             nearest = np.clip(nearest, 0.0, 1.0)
             X_WN = exp(nearest[:, None] * piece.twist) @ piece.X_WA
             screws.append(_deviation(_distances(X_WE[here], X_WN, plan.free_axis)))
-        tracking = _deviation(np.concatenate(errors))
+        distances = np.concatenate(errors)
+        tracking = _deviation(distances)
+        most = np.array([allowed.position, allowed.rotation])
+        since |= _since(Flaw.OFF, t[times], distances / most)
         ended, X_WB = arm.pose(q[-1:]), plan.segments[-1].X_WB[None]
         final = _deviation(_distances(ended, X_WB, plan.free_axis))
     return ExecutionReport(
@@ -152,12 +204,21 @@ def make_report(
         worst_unit=arm.units[joint],
         worst_compared=float(compared[joint]),
         outside=outside,
-        velocity=float((np.abs(v) / arm.velocity_limits).max()),
+        velocity=float(fast.max()),
         tracking=tracking,
         screws=tuple(screws),
         contacts=tuple(contacts),
         final=final,
+        moved=tuple(moved),
+        allowed=allowed,
+        since=since,
     )
+
+
+def _since(flaw: Flaw, t: Array, ratios: Array) -> dict[Flaw, float]:
+    """The first of the times (m,) at which a ratio (m, n) to what is allowed is above 1, if any."""
+    seen = np.flatnonzero(ratios.max(axis=1) > 1.0)
+    return {flaw: float(t[seen[0]])} if len(seen) else {}
 
 
 def _ahead(X_WE: Array, X_WS: Array, twist: Array, free_axis: Array | None) -> Array:

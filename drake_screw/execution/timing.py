@@ -139,6 +139,16 @@ class TimedPlan:
         """(g + 1, 4, 4) X_WE at the start and at the guiding poses."""
         return np.stack([self.segments[0].X_WA, *(piece.X_WB for piece in self.segments)])
 
+    def moved(self, poses: ArrayLike) -> TimedPlan:
+        """The plan along other screws at the same times; joint paths stay as they are.
+
+        Args:
+            poses: (g + 1, 4, 4) X_WE, in place of `poses`.
+        """
+        ends = itertools.pairwise(np.asarray(poses, dtype=float))
+        pieces = zip(self.segments, ends, strict=True)
+        return replace(self, segments=tuple(replace(p, X_WA=A, X_WB=B) for p, (A, B) in pieces))
+
     def at(self, t: float) -> SetPoint:
         """The set point at time t, in s from the plan's start; it rests before and after."""
         left = max(t, 0.0)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from drake_screw.errors import counted
+from drake_screw.execution.allowed import said
 from drake_screw.execution.report import Deviation, ExecutionReport
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.status import Phase
@@ -99,6 +100,8 @@ _MEASURES: dict[str, Callable[[ExecutionReport], str]] = {
     "screw_mm": lambda r: ";".join(f"{1e3 * d.position:.3f}" for d in r.screws),
     "screw_mrad": lambda r: ";".join(f"{1e3 * d.rotation:.3f}" for d in r.screws),
     "contacts": lambda r: ";".join(f"{' - '.join(c.bodies)} {c.force:.0f} N" for c in r.contacts),
+    "moved_mm": lambda r: ";".join(f"{o.object} {1e3 * o.position:.3f}" for o in r.moved),
+    "moved_mrad": lambda r: ";".join(f"{o.object} {1e3 * o.rotation:.3f}" for o in r.moved),
     "final_mm": lambda r: f"{1e3 * r.final.position:.3f}",
     "final_mrad": lambda r: f"{1e3 * r.final.rotation:.3f}",
 }
@@ -126,6 +129,7 @@ class Measures:
         joint, unit: which joint had it, and "rad" or "m".
         velocity: greatest joint velocity, over its limit.
         tracking, screws, final: greatest of each kind, see `ExecutionReport`.
+        moved: m and rad, greatest of any object; None where objects are locked in place.
         time: s, least, greatest and mean.
     """
 
@@ -136,6 +140,7 @@ class Measures:
     tracking: Deviation
     screws: Deviation
     final: Deviation
+    moved: tuple[float, float] | None
     time: tuple[float, float, float]
 
 
@@ -147,8 +152,10 @@ class TrialSummary:
         instances: how many there were to execute.
         executed: how many have a plan, which was simulated.
         done: how many of those ended as planned.
-        flawless: how many of those besides kept all limits and touched nothing.
-        outside_limits, over_velocity, with_contact: how many had such a flaw.
+        flawless: how many of those besides kept all limits and what else is allowed.
+        outside_limits, over_velocity, with_contact: how many left joint limits, were too fast,
+            touched something.
+        off_the_way, pushed: how many were too far off, and pushed an object too far.
         worst: of all that were executed; None if none was.
         arms: how many executions each of several arms moved in, by its name; {} of a single one.
         without_plan: why there is none.
@@ -162,6 +169,8 @@ class TrialSummary:
     outside_limits: int
     over_velocity: int
     with_contact: int
+    off_the_way: int
+    pushed: int
     worst: Measures | None
     arms: Mapping[str, int]
     without_plan: tuple[Remark, ...]
@@ -179,6 +188,8 @@ class TrialSummary:
                 f"outside joint limits       {self.outside_limits}",
                 f"over a velocity limit      {self.over_velocity}",
                 f"with contact               {self.with_contact}",
+                f"too far off their way      {self.off_the_way}",
+                *self._pushed(self.worst),
                 f"least joint margin         {self.worst.joint_margin:.4f} {self.worst.unit}",
                 f"greatest joint velocity    {self.worst.velocity:.0%} of its limit",
                 f"tracking error (set point) {_at_most(self.worst.tracking)}",
@@ -191,6 +202,15 @@ class TrialSummary:
             lines.append("nothing was executed as planned")
         return "\n".join(lines)
 
+    def _pushed(self, worst: Measures) -> list[str]:
+        if worst.moved is None:
+            return []
+        far, turned = worst.moved
+        return [
+            f"pushed an object           {self.pushed}",
+            f"objects moved              at most {1e3 * far:.2f} mm, {1e3 * turned:.2f} mrad",
+        ]
+
 
 def summarize(trials: Sequence[Trial]) -> TrialSummary:
     """Count and name what trials show."""
@@ -199,7 +219,7 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
         _remark(trial, f"no plan: {trial.reason}") for trial in trials if trial.execution is None
     )
     flawed = tuple(
-        _remark(trial, _flaws(trial.report))
+        _remark(trial, said(trial.report.flaws))
         for trial in trials
         if trial.report is not None and not trial.report.flawless
     )
@@ -211,6 +231,8 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
         outside_limits=sum(bool(report.outside) for report in reports),
         over_velocity=sum(report.velocity > 1.0 for report in reports),
         with_contact=sum(bool(report.contacts) for report in reports),
+        off_the_way=sum(report.off for report in reports),
+        pushed=sum(bool(report.pushed) for report in reports),
         worst=_measures(reports) if reports else None,
         arms=dict(sorted(Counter(trial.arm for trial in trials if trial.arm).items())),
         without_plan=without,
@@ -221,11 +243,6 @@ def summarize(trials: Sequence[Trial]) -> TrialSummary:
 def _remark(trial: Trial, text: str) -> Remark:
     places = tuple((x, y, yaw) for x, y, yaw, *_ in trial.coordinates.tolist())
     return Remark(trial.region, places, text)
-
-
-def _flaws(report: ExecutionReport) -> str:
-    found = [str(report.status), *map(str, report.contacts)]
-    return "; ".join([*found, *(f"{name} leaves its limits" for name in report.outside)])
 
 
 def _measures(reports: Sequence[ExecutionReport]) -> Measures:
@@ -239,8 +256,17 @@ def _measures(reports: Sequence[ExecutionReport]) -> Measures:
         tracking=_greatest([report.tracking for report in reports]),
         screws=_greatest([screw for report in reports for screw in report.screws]),
         final=_greatest([report.final for report in reports]),
+        moved=_farthest(reports),
         time=(min(times), max(times), float(np.mean(times))),
     )
+
+
+def _farthest(reports: Sequence[ExecutionReport]) -> tuple[float, float] | None:
+    moved = [(o.position, o.rotation) for report in reports for o in report.moved]
+    if not moved:
+        return None
+    far, turned = np.max(moved, axis=0).tolist()
+    return far, turned
 
 
 def _greatest(deviations: Sequence[Deviation]) -> Deviation:

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.multibody.tree import ModelInstanceIndex
+from pydrake.multibody.tree import ModelInstanceIndex, RigidBody
 from pydrake.systems.framework import DiagramBuilder, OutputPort
-from pydrake.systems.primitives import Adder, ConstantVectorSource, MatrixGain
+from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain, MatrixGain
 
 from drake_screw.robot import Arm
 from drake_screw.typing import Array
@@ -38,6 +38,47 @@ def measured_state(plant: MultibodyPlant, arm: Arm) -> Array:
         pick[i, joint.position_start()] = 1.0
         pick[arm.n + i, N + joint.velocity_start()] = 1.0
     return pick
+
+
+def free_bodies(plant: MultibodyPlant, bodies: Sequence[RigidBody]) -> Array:
+    """(7k, N + M) picks the positions of free bodies, one after the other, out of a plant's state.
+
+    Args:
+        plant: finalized, with N positions and M velocities.
+        bodies: k of them.
+    """
+    pick = np.zeros((7 * len(bodies), plant.num_positions() + plant.num_velocities()))
+    for i, body in enumerate(bodies):
+        start = body.floating_positions_start()
+        pick[7 * i : 7 * i + 7, start : start + 7] = np.eye(7)
+    return pick
+
+
+def encoders(
+    builder: DiagramBuilder, n: int, state: OutputPort
+) -> tuple[ConstantVectorSource, OutputPort, Adder]:
+    """An arm's encoders, which may be off: they show less than its state by a constant.
+
+    The motors hold the joints by them, so what the joints are told is off by as much.
+
+    Args:
+        builder: to add them to.
+        n: joints of the arm.
+        state: (2n,) q and v as they are.
+
+    Returns:
+        The source of the offsets (2n,); the state that they show (2n,); and what adds them to
+        what the joints are told, at input port 0.
+    """
+    offsets = builder.AddNamedSystem("joint_offsets", ConstantVectorSource(np.zeros(2 * n)))
+    less = builder.AddNamedSystem("less_offsets", Gain(-1.0, 2 * n))
+    read = builder.AddNamedSystem("encoders", Adder(2, 2 * n))
+    command = builder.AddNamedSystem("command_of_encoders", Adder(2, 2 * n))
+    builder.Connect(offsets.get_output_port(), less.get_input_port())
+    builder.Connect(state, read.get_input_port(0))
+    builder.Connect(less.get_output_port(), read.get_input_port(1))
+    builder.Connect(offsets.get_output_port(), command.get_input_port(1))
+    return offsets, read.get_output_port(), command
 
 
 def desired_state(

@@ -14,13 +14,14 @@ from drake_screw.typing import Array
 
 
 class Cause(IntEnum):
-    """Why a plan ended."""
+    """Why a plan ended; EXECUTION, that it was simulated and did not go as it should."""
 
     SUCCESS = 0
     JOINT_LIMIT = 1
     UNREACHABLE = 2
     COLLISION = 3
     NOT_TRIED = 4
+    EXECUTION = 5
 
 
 @dataclass(frozen=True)
@@ -76,10 +77,12 @@ class Outcomes:
     def best_attempt(self) -> NDArray[np.int64]:
         """(N,) of outcomes (N, D): the demonstration that came furthest; -1 if none was tried.
 
-        That is one that succeeds; else the one that failed in the latest segment, and of several
-        the one that did most of it. The first in order wins a tie.
+        That is one that succeeds; else one that was executed; else the one that failed in the
+        latest segment, and of several the one that did most of it. The first in order wins a tie.
         """
         progress = self.segment + 0.5 * self.fraction.astype(float)
+        latest = float(np.iinfo(self.segment.dtype).max)
+        progress = np.where(self.cause == Cause.EXECUTION, progress + latest, progress)
         progress = np.where(self.success, np.inf, progress)
         progress = np.where(self.cause == Cause.NOT_TRIED, -np.inf, progress)
         if self.shape[-1] == 0:
@@ -147,13 +150,12 @@ class Outcomes:
         """Short text of each outcome, as the paper's authors write it, counted from 1.
 
         ``0:0`` success; ``s:j`` failed in the s-th segment at joint j's limit; ``s:n`` unreachable;
-        ``s:c`` collision; ``-`` not tried.
+        ``s:c`` collision; ``s:x`` in its execution; ``-`` not tried.
         """
         segment = (self.segment.astype(int) + 1).astype(str)
         joint = (self.joint.astype(int) + 1).astype(str)
-        why = np.select(
-            [self.cause == Cause.UNREACHABLE, self.cause == Cause.COLLISION], ["n", "c"], joint
-        )
+        letters = {Cause.UNREACHABLE: "n", Cause.COLLISION: "c", Cause.EXECUTION: "x"}
+        why = np.select([self.cause == cause for cause in letters], list(letters.values()), joint)
         text = np.char.add(np.char.add(segment, ":"), why)
         text = np.where(self.success, "0:0", text)
         return np.where(self.cause == Cause.NOT_TRIED, "-", text)

@@ -88,11 +88,16 @@ class TableConfig:
 
 @dataclass(frozen=True)
 class ObjectConfig:
-    """An upright round object, a bowl; its frame is at the centre of its bottom. In m."""
+    """An upright round object, a bowl; its frame is at the centre of its bottom. In m and kg.
+
+    As a free body it is a solid cylinder; `friction` is Coulomb's coefficient of what slides.
+    """
 
     name: str
     radius: float
     height: float
+    mass: float = 0.3
+    friction: float = 0.6
 
 
 class RobotInPlant(NamedTuple):
@@ -241,8 +246,10 @@ def add_table(plant: MultibodyPlant, table: TableConfig) -> None:
 
 def add_object(plant: MultibodyPlant, item: ObjectConfig) -> RigidBody:
     """Add an object as a free body with a visual and a collision shape."""
-    inertia = SpatialInertia.SolidCylinderWithMass(0.3, item.radius, item.height, [0, 0, 1])
+    up = [0.0, 0.0, 1.0]
+    about_middle = SpatialInertia.SolidCylinderWithMass(item.mass, item.radius, item.height, up)
+    inertia = about_middle.Shift([0.0, 0.0, -item.height / 2.0])
     body = plant.AddRigidBody(item.name, plant.AddModelInstance(item.name), inertia)
     X_OC = RigidTransform([0.0, 0.0, item.height / 2.0])
-    register(plant, body, Cylinder(item.radius, item.height), X_OC, CLAY)
+    register(plant, body, Cylinder(item.radius, item.height), X_OC, CLAY, item.friction)
     return body

@@ -133,7 +133,12 @@ def vertices(surface: PolygonSurfaceMesh | TriangleSurfaceMesh) -> Array:
 
 
 def register(
-    plant: MultibodyPlant, body: RigidBody, shape: Shape, X_BG: RigidTransform, color: Array
+    plant: MultibodyPlant,
+    body: RigidBody,
+    shape: Shape,
+    X_BG: RigidTransform,
+    color: Array,
+    friction: float = 0.6,
 ) -> None:
     """Give a body a look and a collision shape, which are the same.
 
@@ -143,7 +148,7 @@ def register(
         return
     plant.RegisterVisualGeometry(body, X_BG, shape, f"{body.name()}_look", color)
     plant.RegisterCollisionGeometry(
-        body, X_BG, shape, f"{body.name()}_shape", CoulombFriction(0.8, 0.6)
+        body, X_BG, shape, f"{body.name()}_shape", CoulombFriction(friction, friction)
     )
 
 

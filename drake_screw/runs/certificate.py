@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
-import numpy as np
-
-from drake_screw.acquisition import Finished, Status
-from drake_screw.assembly.following import free_roll
-from drake_screw.assembly.freedoms import Freedom, freedoms, tool_touches
-from drake_screw.assembly.setup import Setup
-from drake_screw.bandits.spending import attempt_delta
+from drake_screw.assembly.freedoms import Freedom
 from drake_screw.errors import listed
+from drake_screw.runs.execution_terms import ExecutionTerms
 from drake_screw.runs.html import certificate_html
 
 
@@ -57,6 +52,8 @@ class Certificate:
             motion.
         led_around: whether an arm was led around what a free approach touches, for which OMPL has
             to be there; None where that was not asked of it, or is not known.
+        success: what counts as one, a "plan" or its "execution".
+        execution: what executions had to do; None where plans are not executed.
         kept_position: m, and
         kept_rotation: rad, largest deviation of what was shown near the objects from what the
             demonstrations keep of it; None where it is not known.
@@ -94,6 +91,8 @@ class Certificate:
     free_roll: str | None = None
     approach: Literal["screw", "free"] = "screw"
     led_around: bool | None = None
+    success: Literal["plan", "execution"] = "plan"
+    execution: ExecutionTerms | None = None
     kept_position: float | None = None
     kept_rotation: float | None = None
     reason: str = ""
@@ -150,6 +149,7 @@ class Certificate:
             f"places drawn uniformly in each region{self._places()}. To succeed is to have a plan "
             f"{within} the joint limits of the robot's model{collisions}."
             f"{self._of_arms()}{self._unseen()}{self._way_there()}"
+            f"{'' if self.execution is None else f' {self.execution}'}"
         )
 
     def _of_arms(self) -> str:
@@ -223,74 +223,6 @@ class Certificate:
 
     def _repr_html_(self) -> str:
         return certificate_html(self.certified, self.statement)
-
-
-def certificate(
-    setup: Setup,
-    finished: Finished,
-    *,
-    attempt: int = 1,
-    instances: int = 0,
-    led_around: bool | None = None,
-) -> Certificate:
-    """What a finished run states.
-
-    Args:
-        setup: of the run.
-        finished: its last event.
-        attempt: 1 + the number of rounds before the last whose verdict was `attempted`.
-        instances: drawn in all rounds.
-        led_around: as the certificate has it.
-    """
-    verdict, goal, bandit = finished.verdict, setup.scenario.coverage, setup.bandit
-    shown: dict[str, Any] = {}
-    if verdict is not None:
-        spent = bool(getattr(bandit, "spend", True))
-        shown = {
-            "claim": verdict.claim,
-            "coverage": goal.beta if verdict.certified else verdict.coverage,
-            "confidence": 1.0 - goal.delta,
-            "confidence_holds_for": "the whole run" if spent else "each round",
-            "fresh_instances": verdict.total_samples,
-            "instances_in_all_rounds": instances,
-            "delta_spent_over_attempts": spent,
-        }
-        if setup.tree is None:
-            share = attempt_delta(goal.delta, attempt, spend=spent)
-            shown |= {"attempt": attempt, "delta_of_attempt": share}
-    return Certificate(
-        certified=finished.status is Status.CERTIFIED,
-        demonstrations=len(finished.demonstrations),
-        regions=setup.regions.K if verdict is None else len(verdict.samples),
-        beta=goal.beta,
-        epsilon=goal.epsilon,
-        delta=goal.delta,
-        collisions_checked=setup.scenario.planner.collision,
-        clearance=setup.scenario.planner.clearance,
-        joint_margin=setup.scenario.planner.joint_margin,
-        slide_margin=setup.scenario.planner.slide_margin,
-        ignored_collisions=setup.scenario.robot.ignore_collisions,
-        arms=tuple(arm.name for arm in setup.scenario.robot.arms or ()),
-        incomplete_shapes=setup.workcell.model.incomplete,
-        tool_touches=tool_touches(setup.scenario) or None,
-        turned_any_way=tuple(o.name for o in setup.area.objects if o.any_orientation) or None,
-        apart=setup.scenario.apart or None,
-        strategy=bandit.name,
-        guarantee=bandit.guarantee,
-        freedoms=freedoms(setup.scenario),
-        free_roll=free_roll(setup.scenario),
-        approach=setup.scenario.planner.approach,
-        led_around=led_around,
-        kept_position=_largest(finished, "position"),
-        kept_rotation=_largest(finished, "rotation"),
-        reason=finished.reason,
-        **shown,
-    )
-
-
-def _largest(finished: Finished, measure: str) -> float | None:
-    found = [getattr(f, measure) for d in finished.demonstrations for f in d.fidelity]
-    return max(found) if found and np.isfinite(found).all() else None
 
 
 def _sentence(text: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails
 
-from drake_screw.acquisition import Evaluation
+from drake_screw.acquisition import Evaluation, Executed
 from drake_screw.bandits import Cell
 from drake_screw.errors import RunDirectoryError
 from drake_screw.planning import Outcomes
@@ -93,6 +93,7 @@ def save_evaluation(file: Path, evaluation: Evaluation) -> None:
         "pair": outcomes.pair,
         "arm": outcomes.arm,
         **_frontier_arrays(evaluation.frontier),
+        **_executed_arrays(evaluation.executed),
     }
     np.savez_compressed(file, **arrays)
 
@@ -115,7 +116,7 @@ def load_evaluation(file: Path) -> Evaluation:
             data.get("arm"),  # the only one in old runs
         )
         region = data["region"].astype(np.int64)
-        return Evaluation(_coordinates(data), region, outcomes, _frontier(data))
+        return Evaluation(_coordinates(data), region, outcomes, _frontier(data), _executed(data))
 
 
 def _coordinate_arrays(coordinates: Array) -> dict[str, Array]:
@@ -162,6 +163,19 @@ def _unsigned(region: NDArray[np.int64]) -> NDArray[Any]:
     """As the least of uint16, uint32 and uint64 that holds all regions."""
     least = np.min_scalar_type(region.max(initial=0))
     return region.astype(np.promote_types(np.uint16, least))
+
+
+def _executed_arrays(executed: Executed | None) -> dict[str, NDArray[Any]]:
+    if executed is None:
+        return {}
+    return {f"executed_{field.name}": getattr(executed, field.name) for field in fields(Executed)}
+
+
+def _executed(data: Mapping[str, NDArray[Any]]) -> Executed | None:
+    """What `_executed_arrays` made arrays of."""
+    if "executed_ran" not in data:
+        return None
+    return Executed(**{field.name: data[f"executed_{field.name}"] for field in fields(Executed)})
 
 
 def _frontier_arrays(frontier: tuple[Cell, ...]) -> dict[str, NDArray[Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,11 @@ import numpy as np
 from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.stations import check_masses, check_standing, station_config
 from drake_screw.assembly.ways import why_failed
-from drake_screw.errors import ModelError
-from drake_screw.execution import build_station, recording_html
-from drake_screw.execution.motors import assumed_motors, immovable
-from drake_screw.execution.parallel import Job, StationConfig, execute_all
+from drake_screw.execution import recording_html
+from drake_screw.execution.motors import assumed_motors
+from drake_screw.execution.parallel import Job, execute_all
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
@@ -57,6 +58,8 @@ def execute(
     per_region: int = 2,
     instance: InstanceLike | None = None,
     workers: int | None = None,
+    free_objects: bool = False,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Executions:
     """Plan, simulate and report executions of a run.
 
@@ -71,14 +74,21 @@ def execute(
             reported.
         instance: execute this one instead: {object: (x, y[, yaw])}, or as `placed` takes them.
         workers: processes; as many as processors if None.
+        free_objects: objects can be pushed, and pushing one farther than the scenario's block
+            `execution` allows is a flaw; else they are locked in place.
+        progress: called with how many are done and how many there are to simulate.
 
     Raises:
         DrakeScrewError: the run cannot be read or has no demonstrations, the instance is not one,
-            the model lacks inertia, or the folder cannot be written.
+            the model lacks inertia, a free object has nothing to stand on, or the folder cannot be
+            written.
     """
     opened = open_run(run)
     setup, demonstrations = opened.setup, opened.demonstrations
-    _check_masses(setup)
+    for one in setup.arms:
+        check_masses(one.workcell)
+    if free_objects:
+        check_standing(setup, station_config(setup, free_objects=True))
     planner = setup.planner_of_all(careful=True)
 
     def plan(coordinates: Array) -> Outcomes:
@@ -93,7 +103,7 @@ def execute(
     X_WO = setup.area.X_WO(coordinates)
     solved = np.flatnonzero(outcomes.any_success).tolist()
     best = {i: setup.plan(demonstrations, coordinates[i], most=1) for i in solved}
-    done = _executed(setup, best, X_WO, workers)
+    done = _executed(setup, best, X_WO, workers, progress, free_objects=free_objects)
     trials = []
     for i, place in enumerate(coordinates):
         region = int(setup.regions.index(place))
@@ -123,7 +133,11 @@ def execute(
         if shown:
             with scratch():
                 page = recording_html(
-                    shown, table=setup.table, objects=setup.objects, obstacles=setup.obstacles
+                    shown,
+                    table=setup.table,
+                    objects=setup.objects,
+                    obstacles=setup.obstacles,
+                    free_objects=free_objects,
                 )
             (folder / "executions.html").write_text(page)
 
@@ -140,45 +154,39 @@ def execute(
 
 
 def _executed(
-    setup: Setup, best: Mapping[int, RankedPlan], X_WO: Array, workers: int | None
+    setup: Setup,
+    best: Mapping[int, RankedPlan],
+    X_WO: Array,
+    workers: int | None,
+    progress: Callable[[int, int], None] | None,
+    *,
+    free_objects: bool,
 ) -> dict[int, Execution]:
     """Executions of the best plans of instances, each in a station that moves the plan's arm."""
     done: dict[int, Execution] = {}
+
+    def told(count: int, _: int, before: int) -> None:
+        if progress is not None:
+            progress(before + count, len(best))
+
     for one in setup.arms:
         own = [i for i, plan in best.items() if plan.arm is one.arm]
         if own:
-            config = StationConfig(one.robot, setup.table, setup.objects, setup.obstacles)
+            config = station_config(setup, one.robot, free_objects=free_objects)
             jobs = [Job(best[i].plan, X_WO[i]) for i in own]
-            done |= dict(zip(own, execute_all(config, jobs, workers=workers), strict=True))
+            tell = partial(told, before=len(done))
+            executed = execute_all(config, jobs, workers=workers, progress=tell)
+            done |= dict(zip(own, executed, strict=True))
     return done
 
 
-def station_graphviz(run: PathLike) -> str:
+def station_graphviz(run: PathLike, *, free_objects: bool = False) -> str:
     """The simulated diagram of a run as GraphViz text.
 
     Raises:
         DrakeScrewError: the run cannot be read.
     """
-    setup = open_run(run).setup
-    return build_station(
-        setup.robot, table=setup.table, objects=setup.objects, obstacles=setup.obstacles
-    ).graphviz
-
-
-def _check_masses(setup: Setup) -> None:
-    workcell = setup.workcell
-    positions = workcell.arm.full_positions(workcell.start)
-    found = immovable(workcell.plant, workcell.robot, positions)
-    if found is not None:
-        joint, links = found
-        named = (
-            f"its links {', '.join(links)} have no mass" if links else "none has any about its axis"
-        )
-        raise ModelError(
-            f"joint '{joint}' cannot be driven: what it moves has no inertia; {named}",
-            remedy="Give the links an <inertial> with mass and inertia; planning does without.",
-            file=workcell.model_file,
-        )
+    return station_config(open_run(run).setup, free_objects=free_objects).build().graphviz
 
 
 def _assumed(setup: Setup) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from drake_screw.acquisition import (
     DemonstrationRequested,
     Event,
     Finished,
+    InstancesExecuted,
     RegionsEvaluated,
     RoundFinished,
     RoundStarted,
@@ -23,6 +24,8 @@ def describe(event: Event, regions: Regions) -> str:
             return f"round {event.round + 1}: evaluating {_count(len(event.demonstrations))}"
         case RegionsEvaluated():
             return f"round {event.round + 1}: {counted(int(event.samples.sum()), 'instance')}"
+        case InstancesExecuted():
+            return f"round {event.round + 1}: executed {event.done:,} of {event.total:,}"
         case RoundFinished():
             verdict = event.verdict
             weakest = verdict.estimates[verdict.region]

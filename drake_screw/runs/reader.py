@@ -27,7 +27,7 @@ from drake_screw.errors import RunDirectoryError, ScenarioError, counted
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.codec import REMEDY, load_evaluation
 from drake_screw.runs.directory import INSTANCES, SCENARIO, RunDirectory
-from drake_screw.visualization.attempt import Attempt, attempt, collided
+from drake_screw.visualization.attempt import Attempt, attempt, collided, executed
 from drake_screw.visualization.browsing import Catalogue, catalogue
 from drake_screw.visualization.cells import cells
 
@@ -243,9 +243,14 @@ class RunReader:
         return [self.attempt(round, instance, d) for d in range(count)]
 
     def _attempt(self, round: int, instance: int, number: int) -> Attempt:
-        """One demonstration tried at an instance, cut short where the run saw a collision."""
+        """One demonstration tried at an instance, cut short where the run saw it go wrong.
+
+        Where plans are executed, it is planned for where the objects were measured.
+        """
         event = self.event(round)
-        X_WO = self.setup.area.X_WO(event.evaluation.coordinates[instance])
+        ran = event.evaluation.executed
+        places = event.evaluation.coordinates if ran is None else ran.measured
+        X_WO = self.setup.area.X_WO(places[instance])
         demonstration = event.demonstrations[number]
         found = event.evaluation.outcomes[instance][number]
         if found.cause == Cause.NOT_TRIED:
@@ -257,6 +262,8 @@ class RunReader:
         name = self.setup.arm_name(found)
         tried = attempt(one.arm, number, demonstration, X_WO, plan, name)
         tried = replace(tried, turned=turned)
+        if found.cause == Cause.EXECUTION and ran is not None:
+            return executed(tried, found, str(ran.words[instance]))
         if found.cause != Cause.COLLISION:
             return tried
         return collided(tried, found, one.workcell, self.setup.scenario.planner.clearance)

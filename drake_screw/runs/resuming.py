@@ -19,6 +19,7 @@ from drake_screw.acquisition import (
 from drake_screw.acquisition.grid_evaluator import Progress
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
+from drake_screw.runs.kept_executions import KeptExecutions
 from drake_screw.runs.reader import RunReader
 
 
@@ -30,10 +31,10 @@ def carry_on(reader: RunReader, progress: Progress) -> Iterator[Event]:
 
     Args:
         reader: of the run.
-        progress: called with every batch of instances within a round.
+        progress: called with every batch of instances within a round, and as they are executed.
     """
     setup, scenario = reader.setup, reader.setup.scenario
-    evaluator = setup.evaluator(progress)
+    evaluator = setup.evaluator(progress, KeptExecutions(reader.directory.path))
 
     def evaluate(
         round: int, demonstrations: tuple[Demonstration, ...], attempt: int

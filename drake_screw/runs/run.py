@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from drake_screw.acquisition import (
     Event,
     Finished,
+    InstancesExecuted,
     RegionsEvaluated,
     RoundFinished,
     Status,
@@ -30,10 +31,12 @@ from drake_screw.runs.begun_with import (
     check_ways_around,
     model_hashes,
 )
-from drake_screw.runs.certificate import Certificate, certificate
+from drake_screw.runs.certificate import Certificate
+from drake_screw.runs.certifying import certificate
 from drake_screw.runs.codec import FORMAT
 from drake_screw.runs.directory import PICTURE, SCENARIO, RunDirectory, now, versions
 from drake_screw.runs.html import certificate_html, run_html
+from drake_screw.runs.kept_executions import KeptExecutions
 from drake_screw.runs.mending import drop_damaged, find_damage
 from drake_screw.runs.narration import describe
 from drake_screw.runs.reader import RunReader
@@ -117,7 +120,8 @@ class Run:
 
         Args:
             listeners: each is called with every event, in this order, and with `RegionsEvaluated`
-                for each batch of instances within a round, which is not yielded.
+                for each batch of instances within a round, and `InstancesExecuted` as they are
+                executed, which are not yielded.
 
         Yields:
             Events; the last is `Finished`.
@@ -136,7 +140,7 @@ class Run:
         check_parts(self.setup, self.directory)
         check_ways_around(self.setup, self.directory.record.led_around, "run", self.directory.path)
 
-        def progress(event: RegionsEvaluated) -> None:
+        def progress(event: RegionsEvaluated | InstancesExecuted) -> None:
             for listener in listeners:
                 listener(event)
 
@@ -177,6 +181,7 @@ class Run:
                 from drake_screw.runs.pictures import draw_round  # takes long to import
 
                 self.directory.add_round(event, lambda e, stem: draw_round(self.setup, e, stem))
+                KeptExecutions(self.directory.path).forget()
         elif isinstance(event, Finished):
             from drake_screw.runs.redrawing import draw_all
 
@@ -226,6 +231,7 @@ def new_run(scenario: Scenario, output: PathLike | None = None, **parts: Unpack[
     setup = Setup(scenario, **parts)
     for part in (setup.strategy, setup.bandit, setup.teacher, setup.ask, setup.initial):
         assert part is not None
+    _ = setup.executing
     goal = scenario.coverage
     record = RunRecord(
         format=FORMAT,

@@ -15,7 +15,7 @@ from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, NoMotionKept
 from drake_screw.errors import DrakeScrewError, RecordingError
-from drake_screw.runs.certificate import certificate
+from drake_screw.runs.certifying import certificate
 from drake_screw.runs.codec import plain
 from drake_screw.runs.selection import Attempt, PassedOver, Selection, TableSummary
 from drake_screw.runs.selection_events import Listener, Step, Tried

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from drake_screw.acquisition import RegionsEvaluated
+from drake_screw.acquisition import InstancesExecuted, RegionsEvaluated
 from drake_screw.bandits import Verdict
 from drake_screw.runs.selection import Attempt
 from drake_screw.tasks import Regions
@@ -30,5 +30,5 @@ class Tried:
     regions: Regions
 
 
-Listener = Callable[[Step | RegionsEvaluated | Tried], None]
+Listener = Callable[[Step | RegionsEvaluated | InstancesExecuted | Tried], None]
 """Is called with every step, with each batch of instances to certify, and with each attempt."""

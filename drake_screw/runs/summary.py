@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from drake_screw.errors import RunDirectoryError
+from drake_screw.acquisition import Evaluation
+from drake_screw.errors import RunDirectoryError, counted
 from drake_screw.planning.touching import CollisionCounts, count_collisions
 from drake_screw.runs.codec import plain
 from drake_screw.runs.run import Run
@@ -25,6 +26,25 @@ class RoundSummary:
 
 
 @dataclass(frozen=True)
+class ExecutionCounts:
+    """How many plans were executed, and how many of these went wrong, by `Flaw`."""
+
+    executed: int
+    flaws: Mapping[str, int]
+
+    def __str__(self) -> str:
+        wrong = ", ".join(f"{name} {count:,}" for name, count in self.flaws.items())
+        failed = f"{sum(self.flaws.values()):,} failed: {wrong}" if wrong else "none failed"
+        return f"{counted(self.executed, 'plan')} executed, {failed}"
+
+
+def count_executions(evaluation: Evaluation) -> ExecutionCounts | None:
+    """What executing the plans of a round found; None where they are not."""
+    ran = evaluation.executed
+    return None if ran is None else ExecutionCounts(int(ran.ran.sum()), ran.counts())
+
+
+@dataclass(frozen=True)
 class RunSummary:
     """What a run came to.
 
@@ -38,6 +58,8 @@ class RunSummary:
         statement: the same in sentences.
         demonstrations: their names, in the order of use.
         rounds: in their order.
+        executions: of its last round how many plans were executed, and of these how many went
+            wrong, by what explains it; None where plans are not executed.
         collisions: how the failing instances of its last round collide, each by its best attempt;
             None where collisions are not looked at.
     """
@@ -52,6 +74,7 @@ class RunSummary:
     demonstrations: tuple[str, ...]
     rounds: tuple[RoundSummary, ...]
     collisions: CollisionCounts | None = None
+    executions: ExecutionCounts | None = None
 
     @property
     def certified(self) -> bool:
@@ -72,7 +95,9 @@ def summarize_run(run: Run) -> RunSummary:
             remedy=f"Finish it first: drake-screw run --resume {run.directory.path}",
             file=run.directory.path,
         )
-    collisions = None
+    collisions = executions = None
+    if record.rounds:
+        executions = count_executions(run.reader.evaluated(len(record.rounds) - 1)[0])
     if run.setup.scenario.planner.collision and record.rounds:
         last, _ = run.reader.evaluated(len(record.rounds) - 1)
         collisions = count_collisions(last.outcomes, run.setup.workcell)
@@ -96,4 +121,5 @@ def summarize_run(run: Run) -> RunSummary:
             for entry in record.rounds
         ),
         collisions=collisions,
+        executions=executions,
     )

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Annotated, Literal
 
+from pydantic import Field
+
 from drake_screw.errors import suggestion
 from drake_screw.scenario.block import Block, Problem
 from drake_screw.scenario.values import METRES, RADIANS, Interval, Name, OneOf, Positive
@@ -39,6 +41,10 @@ class ObjectBlock(Block):
     """radius of the object, to draw it and for collisions"""
     height: Annotated[Positive, METRES]
     """height of the object, to draw it and for collisions"""
+    mass: Annotated[Positive, Field(json_schema_extra={"unit": "kg"})] = 0.3
+    """mass of the object, a solid cylinder, where it is free to move in an execution"""
+    friction: Annotated[float, Field(ge=0.0)] = 0.6
+    """its coefficient of friction there; with table and robot, which have 0.6, that is 0.6, too"""
     symmetry: SymmetryBlock | None = None
     """how it may be turned about an axis and be the same to the task; left out if it may not"""
 

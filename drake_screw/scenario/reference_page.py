@@ -96,6 +96,7 @@ _RULES = """\
 - `regions` has either `grid` or `adaptive`. An axis whose range is a single value cannot be
   divided.
 - With `regions.adaptive`, `coverage.strategy` is not used and `coverage.options` must be empty.
+- `coverage.success: execution` needs `planner.collision`, and objects that stand on something.
 - `coverage.epsilon` is below 1 - `coverage.beta`, or no run could end with a certificate.
 - `demonstrations.budget` is at least the number of initial demonstrations.
 - A `simulated` teacher needs `motion` and has no `folder`; a `recorded` one needs `folder` and has

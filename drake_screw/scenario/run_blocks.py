@@ -58,10 +58,19 @@ class CoverageBlock(Block):
     """accuracy to which failure probabilities are measured; below 1 - beta"""
     delta: Probability = 0.05
     """probability that the measurement may be wrong: 1 - confidence"""
+    success: Annotated[Literal["plan", "execution"], OneOf(("plan", "execution"))] = "plan"
+    """what counts as a success: a plan, or a plan whose execution in simulation, objects free to
+    move, does no more than the block `execution` allows"""
     strategy: Annotated[str, PartOf("strategies")] = "eprocess"
     """the bandit that measures coverage"""
     options: Options = Field(default={})
-    """options of the strategy"""
+    """options of the strategy; where plans are executed `rank_budget` of eprocess is 0 if left out:
+    no further instances are drawn to tell which of several weak regions is the weakest"""
+
+    @property
+    def strategy_options(self) -> dict[str, Option]:
+        executed = self.success == "execution" and self.strategy == "eprocess"
+        return {"rank_budget": 0, **self.options} if executed else dict(self.options)
 
     def broken_rules(self) -> Iterator[Problem]:
         slack = 1 - self.beta

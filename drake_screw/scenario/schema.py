@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr
 
 from drake_screw.errors import suggestion
 from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.execution_block import ExecutionBlock
 from drake_screw.scenario.object_blocks import ObjectBlock, standing_problems
 from drake_screw.scenario.robot_blocks import RecordedOnBlock, RobotBlock
 from drake_screw.scenario.run_blocks import (
@@ -62,6 +63,8 @@ class Scenario(Block):
     """how recordings are cut into constant screws"""
     planner: PlannerBlock = PlannerBlock()
     """how plans are computed"""
+    execution: ExecutionBlock = ExecutionBlock()
+    """what a simulated execution may do and still be as planned"""
     seed: Annotated[int, Field(ge=0)] = 0
     """seed of all random draws"""
     meshcat: bool = False
@@ -120,6 +123,7 @@ class Scenario(Block):
                 )
         yield from standing_problems(self.objects)
         yield from self._apart()
+        yield from self._executed()
         yield from self._adaptive()
         yield from self._grid()
         K = math.prod(count for counts in self.cells for count in counts)
@@ -143,6 +147,23 @@ class Scenario(Block):
                 "left where objects must not overlap",
                 "Write a grid, as in `regions: {grid: {cup.x: 2, cup.y: 2}}`, or leave `apart` "
                 "out.",
+            )
+
+    def _executed(self) -> Iterator[Problem]:
+        if self.coverage.success == "plan":
+            return
+        if self.robot.arms is not None and len(self.robot.arms) > 1:
+            yield Problem(
+                ("coverage", "success"),
+                "plans of one of several arms are not executed in a run",
+                "Write coverage.success: plan, and see drake-screw execute; or give a single arm.",
+            )
+        if not self.planner.collision:
+            yield Problem(
+                ("planner", "collision"),
+                "plans are executed (coverage.success: execution), and those that touch something "
+                "never are",
+                "Write planner.collision: true, or coverage.success: plan.",
             )
 
     def _adaptive(self) -> Iterator[Problem]:

@@ -150,9 +150,18 @@ class Experiment:
 
     Args:
         scenario: all but its regions is used; its seed is the study's.
+
+    Raises:
+        ScenarioError: it wants plans to be executed.
     """
 
     def __init__(self, scenario: Scenario) -> None:
+        if scenario.coverage.success == "execution":
+            raise ScenarioError(
+                "coverage.success: the runs of a study plan and do not execute",
+                remedy="Write coverage.success: plan, or carry out a single run: drake-screw run",
+                file=scenario.source,
+            )
         self.setup = Setup(scenario)
         for one in self.setup.arms:
             one.batch_planner.threads = 1

@@ -3,7 +3,7 @@
 from drake_screw.tasks.boxes import BoxRegions, box_regions, from_unit_box
 from drake_screw.tasks.object_area import ObjectArea
 from drake_screw.tasks.regions import GridRegions, Regions, grid_regions
-from drake_screw.tasks.sampling import anywhere, draw, draw_in_all, uniform
+from drake_screw.tasks.sampling import anywhere, chance, draw, draw_in_all, uniform
 from drake_screw.tasks.symmetry import Symmetry
 from drake_screw.tasks.work_area import ANGLES, AXES, PLANAR, Overlap, WorkArea
 
@@ -20,6 +20,7 @@ __all__ = [
     "WorkArea",
     "anywhere",
     "box_regions",
+    "chance",
     "draw",
     "draw_in_all",
     "from_unit_box",

@@ -19,6 +19,7 @@ from drake_screw.tasks.work_area import PLANAR, WorkArea
 from drake_screw.typing import Array
 
 CHUNK = 1024
+CHANCE = 2**31 + 3
 
 MORE, AGAIN = 1, 2
 """Of the keys of streams: the axes beyond x, y, yaw; what takes the place of overlapping objects.
@@ -142,6 +143,22 @@ def anywhere(area: WorkArea, rng: np.random.Generator, count: int) -> Array:
         f"objects overlap at each of {MOST:,} places drawn in the work area",
         remedy="Give the objects more room, or leave `apart` out.",
     )
+
+
+def chance(width: int, *, seed: int, round: int, region: int, start: int, count: int) -> Array:
+    """Further numbers from [0, 1) for instances of a region, beside those of their places.
+
+    They are the stream of `uniform` with key (round, region, CHANCE).
+
+    Args:
+        width: numbers for each.
+        seed, round, region, start, count: as of `draw`; `region` may be any number of a box.
+
+    Returns:
+        (count, width).
+    """
+    key = (round, region, CHANCE)
+    return uniform((width,), seed=seed, key=key, start=start, count=count)
 
 
 def draw_in_all(

@@ -39,6 +39,7 @@ class Attempt:
         bodies: names of the pairs of bodies that touch where the plan ended, after a collision.
         clearance: m, that they had to keep.
         arm_name: the arm's, where the robot has several that are planned for.
+        flaws: what went wrong when the plan was executed, in words.
     """
 
     arm: Arm
@@ -51,6 +52,7 @@ class Attempt:
     bodies: tuple[Pair, ...] = ()
     clearance: float = 0.0
     arm_name: str | None = None
+    flaws: str = ""
 
     @property
     def guides(self) -> Array:
@@ -172,6 +174,11 @@ def collided(
     return replace(attempt, plan=plan, bodies=bodies, clearance=clearance)
 
 
+def executed(attempt: Attempt, outcome: Outcomes, flaws: str) -> Attempt:
+    """An attempt cut short where its execution, by an outcome of shape (), first went wrong."""
+    return replace(attempt, plan=cut_short(attempt.plan, outcome), flaws=flaws)
+
+
 def headline(attempt: Attempt) -> str:
     """How an attempt ended, in one sentence."""
     arm, plan, total = attempt.arm, attempt.plan, len(attempt.guides)
@@ -196,6 +203,8 @@ def headline(attempt: Attempt) -> str:
             f"fails{of} {where}: {arm.joint_names[joint]} reaches its {which} limit, "
             f"{limit:.3f} {arm.units[joint]}".replace("-", "−")
         )
+    if attempt.cause == Cause.EXECUTION:
+        return f"fails when executed, {where}: {attempt.flaws}"
     if attempt.cause == Cause.COLLISION:
         touching = "; ".join(touch_words(pair, attempt.clearance) for pair in attempt.bodies[:2])
         return f"fails{of} {where}: {touching or 'the arm touches something'}"

@@ -42,6 +42,7 @@ SHAPES = {
     Cause.UNREACHABLE: ("^", 4.0),
     Cause.COLLISION: ("s", 3.4),
     Cause.NOT_TRIED: ("D", 3.0),
+    Cause.EXECUTION: ("v", 4.0),
 }
 GRID = "#b9b4c6"
 EDGE = np.array([-1e-9, 1e-9])

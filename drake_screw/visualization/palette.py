@@ -26,6 +26,7 @@ OUTCOME_COLORS = MappingProxyType(
         Cause.UNREACHABLE: "#7cc8ff",
         Cause.COLLISION: "#111111",
         Cause.NOT_TRIED: "#8a8a8a",
+        Cause.EXECUTION: "#961ee1",
     }
 )
 OUTCOME_NAMES = MappingProxyType(
@@ -35,6 +36,7 @@ OUTCOME_NAMES = MappingProxyType(
         Cause.UNREACHABLE: "unreachable",
         Cause.COLLISION: "collision",
         Cause.NOT_TRIED: "not tried",
+        Cause.EXECUTION: "execution",
     }
 )
 STATUS_COLORS = MappingProxyType(

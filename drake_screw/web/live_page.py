@@ -12,6 +12,7 @@ from drake_screw.acquisition import (
     DemonstrationRequested,
     Event,
     Finished,
+    InstancesExecuted,
     RegionsEvaluated,
     RoundFinished,
     RoundStarted,
@@ -107,6 +108,8 @@ class LivePage:
                 self._start_round(event)
             case RegionsEvaluated():
                 self._fill_regions(event)
+            case InstancesExecuted():
+                self._update(details=describe(event, self._setup.regions))
             case RoundFinished():
                 self._finish_round(event)
             case DemonstrationRequested():

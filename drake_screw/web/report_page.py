@@ -16,6 +16,7 @@ from drake_screw.files import write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.planning.touching import count_collisions
 from drake_screw.runs.reader import RunReader
+from drake_screw.runs.summary import count_executions
 from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.meshcat_page import render
@@ -119,6 +120,7 @@ def _round(
         "number": selection.round + 1,
         "headline": round_headline(event),
         "details": details(event, event.regions),
+        "executions": str(count_executions(event.evaluation) or ""),
         "collisions": _collisions(reader, event),
         "heat_map": _picture(folder / "heat_map.png"),
         "K": event.regions.K,

@@ -11,7 +11,7 @@ from drake_screw.acquisition import Finished, Status
 from drake_screw.assembly.preview import preview
 from drake_screw.assembly.setup import Setup
 from drake_screw.errors import ScenarioError
-from drake_screw.runs.certificate import certificate
+from drake_screw.runs.certifying import certificate
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.scenario.schema import Scenario
 from tests.robot.small_arms import PLANAR, sdf

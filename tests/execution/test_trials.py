@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from drake_screw.execution import Contact, ExecutionStatus, Phase, recording_html
+from drake_screw.execution.allowed import Allowed
+from drake_screw.execution.free_objects import Displacement
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, summarize, trials_csv
 from drake_screw.robot import ObjectConfig
@@ -89,6 +91,33 @@ def test_the_summary_counts_and_names_what_went_wrong(trials) -> None:
     assert "blocked" in text
     assert "left_hand touches bowl" in text
     assert "region 3" not in text
+
+
+def test_a_pushed_object_is_counted_and_named(executed) -> None:
+    good = executed[0]
+    moved = (Displacement("bowl", 4.2e-3, 0.02, 1.5), Displacement("cup", 1e-3, 0.0, 1.6))
+    pushed = replace(good, report=replace(good.report, moved=moved))
+    found = summarize(
+        [Trial(4, PLACE, "demo_02", "", pushed), Trial(3, PLACE, "demo_01", "", good)]
+    )
+    assert (found.done, found.flawless, found.pushed) == (2, 1, 1)
+    assert found.worst.moved == (4.2e-3, 0.02)
+    (said,) = found.flawed
+    assert said.text == "the bowl is pushed by 4.2 mm and turned by 0.020 rad from 1.50 s on"
+    text = str(found)
+    assert "pushed an object           1" in text
+    assert "objects moved              at most 4.20 mm, 20.00 mrad" in text
+    rows = trials_csv([Trial(4, PLACE, "demo_02", "", pushed)], AREA).splitlines()
+    assert "bowl 4.200;cup 1.000" in rows[1]
+    assert "objects moved" not in str(summarize([Trial(3, PLACE, "demo_01", "", good)]))
+
+
+def test_too_far_off_its_way_is_a_flaw(executed) -> None:
+    report = executed[0].report
+    strict = replace(report, allowed=Allowed(position=report.tracking.position / 2.0))
+    found = summarize([Trial(3, PLACE, "demo_01", "", replace(executed[0], report=strict))])
+    assert (found.done, found.flawless, found.off_the_way) == (1, 0, 1)
+    assert "mrad off its way" in found.flawed[0].text
 
 
 def test_what_is_done_and_touches_nothing_is_flawless(trials, executed) -> None:

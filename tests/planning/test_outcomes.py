@@ -31,7 +31,7 @@ UNTRIED = (Cause.NOT_TRIED, -1, -1)
 
 
 def test_causes_have_the_documented_numbers() -> None:
-    assert [cause.value for cause in Cause] == [0, 1, 2, 3, 4]
+    assert [cause.value for cause in Cause] == [0, 1, 2, 3, 4, 5]
 
 
 def test_codes_count_from_one() -> None:
@@ -89,6 +89,15 @@ def test_the_best_attempt_is_the_one_that_came_furthest() -> None:
     none = table[:, :0]
     np.testing.assert_array_equal(none.best_attempt, [-1] * 6)
     assert none.best.codes().tolist() == ["-"] * 6
+
+
+def test_a_plan_that_was_executed_explains_more_than_one_that_never_was() -> None:
+    ran = (Cause.EXECUTION, 1, -1)
+    table = outcomes([[HIT, ran, LIMIT], [ran, GOOD, FAR]])
+    np.testing.assert_array_equal(table.best_attempt, [1, 1])
+    np.testing.assert_array_equal(table.any_success, [False, True])
+    np.testing.assert_array_equal(table.furthest_segment, [1, np.iinfo(np.int16).max])
+    assert table.best.codes().tolist() == ["2:x", "0:0"]
 
 
 def test_other_outcomes_are_put_into_a_copy() -> None:

@@ -11,8 +11,9 @@ import pytest
 from drake_screw.acquisition import Finished, Status
 from drake_screw.bandits import Goal, coverage_bound, make_strategy
 from drake_screw.demonstrations import Fidelity
-from drake_screw.runs.certificate import certificate
+from drake_screw.runs.certifying import certificate
 from drake_screw.runs.codec import plain
+from drake_screw.scenario.execution_block import ExecutionBlock, NoiseBlock
 
 GOAL = Goal(0.95, 0.02, 0.05)
 EARLIER = SimpleNamespace(samples=48, attempted=False)
@@ -20,11 +21,20 @@ ATTEMPT = SimpleNamespace(samples=300, attempted=True)
 
 
 def scenario_of(
-    collision=False, objects=(), tool=None, approach="screw", ignored=(), arms=(), **kept
+    collision=False,
+    objects=(),
+    tool=None,
+    approach="screw",
+    ignored=(),
+    arms=(),
+    execution=None,
+    **kept,
 ):
     each = [SimpleNamespace(name=n, tool=tool, end_effector="hand") for n in arms or ("arm",)]
+    success = "plan" if execution is None else "execution"
     return SimpleNamespace(
-        coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05),
+        coverage=SimpleNamespace(beta=0.95, epsilon=0.02, delta=0.05, success=success),
+        execution=execution,
         planner=SimpleNamespace(
             **{"clearance": 0.0, "joint_margin": 0.0, "slide_margin": 0.0, "roll_axis": None}
             | kept,
@@ -67,6 +77,41 @@ def stated_by(name, mu, rounds=(), scenario=None, led_around=None, **options):
     )
     assert json.loads(json.dumps(plain(stated))) == plain(stated)
     return stated, verdict, " ".join(stated.statement)
+
+
+def test_a_certificate_by_execution_says_what_executions_had_to_do() -> None:
+    exact = ExecutionBlock()
+    noisy = ExecutionBlock(
+        displacement=0.004, contact_force=5.0, noise=NoiseBlock(object_position=0.005)
+    )
+    for block, expected in (
+        (None, ()),
+        (
+            exact,
+            (
+                "within 10 mm and 0.1 rad of where it ought to be",
+                "the robot touches nothing;",
+                "moved by more than 2 mm or turned by more than 0.05 rad",
+                "Objects are measured, and the arm's joints calibrated, exactly.",
+            ),
+        ),
+        (
+            noisy,
+            (
+                "touches nothing with more than 5 N",
+                "moved by more than 4 mm",
+                "standard deviations: x and y of objects are measured to 0.005 m.",
+            ),
+        ),
+    ):
+        stated, _, text = stated_by(
+            "eprocess", [0.0] * 3, scenario=scenario_of(True, execution=block)
+        )
+        assert stated.success == ("plan" if block is None else "execution")
+        assert ("That plan is executed, too" in text) == (block is not None)
+        assert all(words in text for words in expected)
+        assert ("calibrated, exactly" in text) == (block is exact)
+    assert stated.execution.noise.object_position == 0.005
 
 
 def test_a_certificate_of_a_run_that_spent_delta() -> None:

@@ -68,6 +68,27 @@ def test_an_instance_is_executed_and_reported(executed) -> None:
     assert float(row["final_mrad"]) < 10.0
 
 
+def test_objects_can_be_pushed_and_are_not(run, tmp_path) -> None:
+    told = []
+    done = execute(
+        run,
+        instance=PLACE,
+        workers=1,
+        free_objects=True,
+        progress=lambda *counts: told.append(counts),
+    )
+    assert told == [(0, 1), (1, 1)]
+    text, summary = str(done), done.summary
+    assert "pushed an object           0" in text
+    assert "objects moved              at most 0.00 mm, 0.00 mrad" in text
+    assert (summary.executed, summary.pushed, summary.off_the_way) == (1, 0, 0)
+    (row,) = csv.DictReader((done.folder / "executions.csv").open())
+    name, moved = row["moved_mm"].split()
+    assert name == "bowl"
+    assert float(moved) < 0.01
+    assert (done.folder / "executions.html").stat().st_size > 100_000
+
+
 def test_the_runs_own_files_stay_as_they_are(run, executed) -> None:
     _, _, before = executed
     after = contents(run)
