@@ -14,6 +14,7 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.bandits.spending import attempt_delta
 from drake_screw.errors import listed
 from drake_screw.runs.html import certificate_html
+from drake_screw.scenario.workcell_blocks import ToolBlock
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -258,8 +259,8 @@ def certificate(
         slide_margin=setup.scenario.planner.slide_margin,
         ignored_collisions=setup.scenario.robot.ignore_collisions,
         incomplete_shapes=setup.workcell.model.incomplete,
-        tool_touches=None if setup.robot.tool is None else setup.robot.tool.touches or None,
-        turned_any_way=tuple(o.name for o in setup.area.objects if o.any_orientation) or None,
+        tool_touches=(setup.scenario.robot.tool or ToolBlock()).touches or None,
+        turned_any_way=tuple(o.name for o in setup.scenario.objects if o.orientation) or None,
         apart=setup.scenario.apart or None,
         strategy=bandit.name,
         guarantee=bandit.guarantee,
