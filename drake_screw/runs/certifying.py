@@ -64,7 +64,7 @@ def certificate(
         arms=tuple(arm.name for arm in setup.scenario.robot.arms or ()),
         incomplete_shapes=setup.workcell.model.incomplete,
         tool_touches=tool_touches(setup.scenario) or None,
-        turned_any_way=tuple(o.name for o in setup.area.objects if o.any_orientation) or None,
+        turned_any_way=tuple(o.name for o in setup.scenario.objects if o.orientation) or None,
         apart=setup.scenario.apart or None,
         strategy=bandit.name,
         guarantee=bandit.guarantee,

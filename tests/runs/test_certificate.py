@@ -196,12 +196,12 @@ def test_it_says_what_was_taken_for_granted() -> None:
     assert "any joint motion" not in text
     symmetry = SimpleNamespace(axis="z", turns="any")
     objects = [
-        SimpleNamespace(name="bowl", symmetry=symmetry),
-        SimpleNamespace(name="mug", symmetry=None),
-        SimpleNamespace(name="box", symmetry=SimpleNamespace(axis="x", turns=4)),
+        SimpleNamespace(name="bowl", orientation=None, symmetry=symmetry),
+        SimpleNamespace(name="mug", orientation=None, symmetry=None),
+        SimpleNamespace(name="box", orientation=None, symmetry=SimpleNamespace(axis="x", turns=4)),
     ]
-    tool = SimpleNamespace(symmetry=symmetry, touches=())
-    scenario = scenario_of(objects=objects, tool=tool, approach="free")
+    tool = SimpleNamespace(symmetry=symmetry, touches=("cup", "table"))
+    scenario = scenario_of(collision=True, objects=objects, tool=tool, approach="free")
     stated, _, text = stated_by("eprocess", [0.0, 0.0, 0.0], scenario=scenario)
     assert [(f.body, f.axis, f.turns, f.tried) for f in stated.freedoms] == [
         ("bowl", "z", "any", 24),
@@ -212,6 +212,7 @@ def test_it_says_what_was_taken_for_granted() -> None:
     assert "by any angle, of which 24 are tried." in text
     assert "The box is taken to be the same after each of 4 equal turns about its x axis" in text
     assert "the end effector may be turned with it" in text
+    assert "not looked at: what the hand holds and cup, what the hand holds and table." in text
     assert "mug" not in text
     assert "The way to the first guiding pose may be any joint motion." in text
     record = plain(stated)
