@@ -60,7 +60,7 @@ def find_problems(data: Data) -> tuple[Problem, ...]:
 
 def test_every_key_is_described_and_every_block_frozen() -> None:
     found = list(blocks(Scenario))
-    assert len(set(found)) == 18
+    assert len(set(found)) == 20
     for block in found:
         for name, field in block.model_fields.items():
             assert field.description, f"{block.__name__}.{name}"
