@@ -15,15 +15,15 @@ Deviation = Annotated[float, Field(ge=0.0, le=1.0)]
 
 class NoiseBlock(Block):
     object_position: Annotated[Deviation, METRES] = 0.0
-    """of x and of y at which an object is measured, from where it stands"""
+    """standard deviation of x and of y at which an object is measured, from where it stands"""
     object_yaw: Annotated[Deviation, RADIANS] = 0.0
-    """of the yaw at which an object is measured; one that may be turned by any angle about z has
-    none to mistake"""
+    """standard deviation of the yaw at which an object is measured; one that may be turned by any
+    angle about z has none to mistake"""
     joint_offset: Annotated[Deviation, RADIANS] = 0.0
-    """of each revolute joint of the arm from what its encoder says, the same for a whole
-    execution"""
+    """standard deviation of each revolute joint of the arm from what its encoder says, the same for
+    a whole execution"""
     slide_offset: Annotated[Deviation, METRES] = 0.0
-    """of each prismatic joint, likewise"""
+    """standard deviation of each prismatic joint, likewise"""
 
 
 class ExecutionBlock(Block):
@@ -38,5 +38,5 @@ class ExecutionBlock(Block):
     contact_force: Annotated[Annotated[float, Field(ge=0.0)], NEWTONS] = 0.0
     """force with which the robot may touch something; with 0 it must touch nothing"""
     noise: NoiseBlock = NoiseBlock()
-    """standard deviations of what is not known exactly when instances are executed for a
-    certificate (`coverage.success: execution`): normal, about 0, and drawn for each instance"""
+    """what is not known exactly when instances are executed for a certificate (`coverage.success:
+    execution`): normally distributed about 0, and drawn for each instance"""

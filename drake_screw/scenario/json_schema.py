@@ -90,6 +90,7 @@ def limits(schema: Schema) -> list[str]:
         "exclusiveMinimum": "above",
         "minimum": "at least",
         "exclusiveMaximum": "below",
+        "maximum": "at most",
     }
     found = [f"{word} {schema[name]:g}" for name, word in words.items() if name in schema]
     for inner in (*alternatives(schema), *_entries(schema)[:1]):

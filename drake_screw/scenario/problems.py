@@ -12,7 +12,7 @@ from drake_screw.errors import nearest, suggestion
 from drake_screw.scenario.block import Keys, Problem
 from drake_screw.scenario.json_schema import Schema, alternatives, at, describe, limits, resolved
 
-_BOUNDS = ("greater_than", "greater_than_equal", "less_than")
+_BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 
 
 def problems_of(error: ValidationError, data: Any) -> list[Problem]:
@@ -73,7 +73,7 @@ def _problem(detail: ErrorDetails, data: Any) -> Problem:
         case "string_pattern_mismatch":
             return Problem(keys, f"expected the {meaning}; found '{value}'")
         case kind if kind in _BOUNDS:
-            bounds = " and ".join(limits(schema)).replace("at least", "of at least")
+            bounds = " and ".join(limits(schema)).replace("at ", "of at ")
             found = _found(value).removeprefix("the number ")
             message = f"expected a number {bounds}, found {found}"
             return Problem(keys, message, f"Meaning: {meaning}.")

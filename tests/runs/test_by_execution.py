@@ -201,7 +201,8 @@ def test_adaptive_regions_execute_too(recordings, stand, tmp_path) -> None:
     ("changes", "said"),
     [
         (["planner.collision=false"], "those that touch something never are"),
-        (["execution.noise.object_position=-1"], "object_position"),
+        (["execution.noise.object_position=-1"], "of at least 0 and of at most 1, found -1"),
+        (["execution.noise.object_position=5"], "of at least 0 and of at most 1, found 5"),
         (["execution.displacement=0"], "displacement"),
         (["execution.noise.yaw=0.1"], "yaw"),
         (["coverage.success=executed"], "there is no 'executed'"),

@@ -62,7 +62,8 @@ def test_every_key_is_described_and_every_block_frozen() -> None:
         for name, field in block.model_fields.items():
             assert field.description, f"{block.__name__}.{name}"
             extra = field.json_schema_extra
-            assert extra is None or extra in ({"unit": "m"}, {"unit": "rad"}, {"unit": "rad/s"})
+            units = ("m", "rad", "rad/s", "kg", "N")
+            assert extra is None or extra in [{"unit": unit} for unit in units]
         assert block.model_config["frozen"]
     with pytest.raises(ValidationError, match="frozen"):
         GOOD.seed = 1  # type: ignore[misc]
