@@ -57,9 +57,7 @@ class RankedPlan:
 
         It is 0.5 of a joint without limits.
         """
-        part, some = np.full(self.arm.n, 0.5), ~self.arm.endless
-        ranges = self.arm.upper[some] - self.arm.lower[some]
-        part[some] = self.arm.margin(self.plan.q).min(axis=0)[some] / ranges
+        part = self.arm.margin_parts(self.plan.q)
         return dict(zip(self.arm.joint_names, part.tolist(), strict=True))
 
     @property
@@ -132,7 +130,33 @@ def best_plan(
     most: int = 5,
     speed: TimeLimits | None = None,
 ) -> RankedPlan:
-    """The plan with the largest margin that touches nothing.
+    """The best of `ranked_plans`, with the others as its alternatives; arguments as there.
+
+    Raises:
+        ScenarioError: there is no plan; it says why.
+    """
+    X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
+    found = ranked_plans(planner, arm, demonstrations, X_WO, q_start, names, most, speed)
+    if isinstance(found, Outcomes):
+        raise ScenarioError(
+            f"no demonstration gives a plan there: "
+            f"{why_not(found, demonstrations, X_WO, q_start, planner)}",
+            remedy="Choose another instance, or carry the run on with more demonstrations.",
+        )
+    return replace(found[0], alternatives=found[1:])
+
+
+def ranked_plans(
+    planner: CollisionFreePlanner,
+    arm: Arm,
+    demonstrations: Sequence[Demonstration],
+    X_WO: Array,
+    q_start: Array,
+    names: Sequence[str],
+    most: int = 5,
+    speed: TimeLimits | None = None,
+) -> tuple[RankedPlan, ...] | Outcomes:
+    """The plans that touch nothing, that with the largest margin first.
 
     Of several with the same margin the one with the largest clearance, then the shortest.
 
@@ -146,13 +170,12 @@ def best_plan(
         X_WO: (k, 4, 4) the objects.
         q_start: (n,) rad or m.
         names: of the k objects.
-        most: plans to return, the best one and its alternatives.
+        most: plans to return.
         speed: how fast they are to be executed.
 
-    Raises:
-        ScenarioError: there is no plan; it says why.
+    Returns:
+        At least one plan; if there is none, the outcomes (D,).
     """
-    X_WO, q_start = np.asarray(X_WO, dtype=float), np.asarray(q_start, dtype=float)
 
     def ranked(plans: list[tuple[Demonstration, Plan]]) -> list[RankedPlan]:
         found = []
@@ -181,13 +204,9 @@ def best_plan(
         plans = planner.plans(demonstrations, poses, q_start, solved, outcomes.variant[solved])
         led = [(demonstrations[d], plan) for d, plan in zip(solved.tolist(), plans, strict=True)]
         found = ranked(led)
-    if not found:
-        raise ScenarioError(
-            f"no demonstration gives a plan there: "
-            f"{why_not(outcomes, demonstrations, X_WO, q_start, planner)}",
-            remedy="Choose another instance, or carry the run on with more demonstrations.",
-        )
-    return replace(found[0], alternatives=tuple(found[1:most]))
+        if not found:
+            return outcomes
+    return tuple(found[:most])
 
 
 def _plans(

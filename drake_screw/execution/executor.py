@@ -78,15 +78,17 @@ class ScrewPlanExecutor(LeafSystem):
     notice that it does not.
 
     Input ports:
-        plan: abstract, a `TimedPlan` or None. A plan that is not the one at hand begins at once.
+        plan: abstract, a `TimedPlan` or None. A plan that is not the one at hand begins at once, or
+            at the time that it names: the one at hand is followed until then, and the command goes
+            on from where it is.
         measured_state: (2n,) measured q in rad (or m), then v.
 
     Output ports:
         desired_state: (2n,) q and v for the arm's position control. Between control steps q
             advances at v. It holds still when nothing runs, after a blockage where the arm is.
         status: abstract, `ExecutionStatus`: idle; running; done, once the measured end effector is
-            at the last guiding pose; failed, with segment and reason. It stays so until another
-            plan comes.
+            at the last guiding pose; failed, with segment and reason; or what the plan says that
+            it ends with. It stays so until another plan comes.
         progress: (1,) part of the plan's time that is over, 0 to 1.
 
     Args:
@@ -148,10 +150,11 @@ class ScrewPlanExecutor(LeafSystem):
         memory = replace(
             memory, q=self._command(memory, context), v=np.zeros(self.arm.n), updated=t
         )
-        if plan is not memory.plan:
+        if plan is not memory.plan and _due(plan, t):
             status = beginning(plan, self.arm, measured, self.tolerances)
-            memory = _Memory(plan, t, t, memory.q, memory.v, status)
-            if plan is not None and status.phase is Phase.RUNNING:
+            began = t if plan is None or plan.begins is None else plan.begins
+            memory = _Memory(plan, began, t, memory.q, memory.v, status)
+            if plan is not None and plan.begins is None and status.phase is Phase.RUNNING:
                 memory = replace(memory, q=plan.segments[0].q[0])
         if memory.status.phase is Phase.RUNNING:
             memory = self._follow(memory, measured)
@@ -204,6 +207,11 @@ class ScrewPlanExecutor(LeafSystem):
         least = np.maximum(-arm.velocity_limits, (arm.lower - q) / period)
         most = np.minimum(arm.velocity_limits, (arm.upper - q) / period)
         return np.clip(v, np.minimum(least, 0.0), np.maximum(most, 0.0))
+
+
+def _due(plan: TimedPlan | None, t: float) -> bool:
+    """Whether a plan's time has come."""
+    return plan is None or plan.begins is None or t >= plan.begins - 1e-9
 
 
 def _parameters(arm: Arm, control: Control) -> DifferentialInverseKinematicsParameters:
