@@ -38,9 +38,7 @@ class PlanChooser:
     def choose(self, X_WO: Array, q: Array) -> Choice | PlanningOutcome:
         """The best plan, as `ranked_plans` has it, or how far the best attempt came."""
         demonstrations = self._demonstrations
-        found = ranked_plans(
-            self._planner, self.arm, demonstrations, X_WO, q, self.names, most=1
-        )
+        found = ranked_plans(self._planner, self.arm, demonstrations, X_WO, q, self.names, most=1)
         if isinstance(found, Outcomes):
             best = int(found.best_attempt)
             return self._failed(found[best], demonstrations[best])

@@ -108,7 +108,7 @@ class ScrewPlanExecutor(LeafSystem):
         self._lags, self._units = self.tolerances.lags(arm), arm.units
         self._plan = self.DeclareAbstractInputPort("plan", Value[object]())
         self._measured = self.DeclareVectorInputPort("measured_state", 2 * arm.n)
-        rest = _Memory(None, 0.0, 0.0, arm.middle, np.zeros(arm.n), ExecutionStatus())
+        rest = _Memory(None, 0.0, -np.inf, arm.middle, np.zeros(arm.n), ExecutionStatus())
         self._state = self.DeclareAbstractState(Value[object](rest))
         self.DeclareInitializationUnrestrictedUpdateEvent(self._initialize)
         self.DeclarePeriodicUnrestrictedUpdateEvent(self.control.period, 0.0, self._step)
@@ -138,6 +138,8 @@ class ScrewPlanExecutor(LeafSystem):
         return memory.q + elapsed * memory.v
 
     def _initialize(self, context: Context, state: State) -> EventStatus:
+        if 0.0 <= context.get_time() - self._memory(context).updated < 1.5 * self.control.period:
+            return EventStatus.DidNothing()  # it goes on from a copy
         q = self._measured.Eval(context)[: self.arm.n]
         rest = _Memory(None, 0.0, context.get_time(), q, np.zeros(self.arm.n), ExecutionStatus())
         state.get_mutable_abstract_state(int(self._state)).set_value(rest)
@@ -169,7 +171,7 @@ class ScrewPlanExecutor(LeafSystem):
         now, ahead = plan.at(t), plan.at(t + self.control.period / 2.0)
         memory = replace(
             memory,
-            status=ExecutionStatus(Phase.RUNNING, now.segment),
+            status=ExecutionStatus(Phase.RUNNING, plan.shown(now.segment)),
             progress=min(t / plan.duration, 1.0),
         )
         late, joint, lag = worst_lag(self._lags, q, measured)

@@ -16,7 +16,9 @@ from drake_screw.planning import Cause
 from drake_screw.planning.connected import ahead
 from drake_screw.typing import Array
 
-CHECKED = 2  # of that many samples of a way to the first guiding pose, one is checked for collisions
+CHECKED = (
+    2  # of that many samples of a way to the first guiding pose, one is checked for collisions
+)
 STILL = 0.01  # part of its velocity limit at which a joint counts as still
 
 
@@ -135,10 +137,8 @@ class Follower:
                 return self._follow(memory, seen)
             case Mode.COMMITTED:
                 return self._watch(memory, seen)
-            case Mode.STOPPING if _past(memory, seen) > self.following.period:
-                assert memory.plan is not None and memory.plan.ending is not None
-                ended = memory.plan.ending.ended
-                return replace(memory, mode=Mode.ENDED if ended else Mode.WAITING)
+            case Mode.STOPPING:
+                return self._await_rest(memory, seen)
         return memory
 
     def _noticed(self, memory: PlannerMemory, seen: Seen) -> PlannerMemory:
@@ -147,9 +147,7 @@ class Follower:
         if rest is None or self._beyond_still(rest, seen.X_WO):
             memory = replace(memory, X_WO_rest=seen.X_WO, resting=seen.t)
         asked = bool(seen.asked)
-        return replace(
-            memory, asked=asked, wanted=memory.wanted or (asked and not memory.asked)
-        )
+        return replace(memory, asked=asked, wanted=memory.wanted or (asked and not memory.asked))
 
     def _is_time(self, memory: PlannerMemory, seen: Seen) -> bool:
         """Whether to plan: it is wanted, and arm and objects are at rest."""
@@ -171,16 +169,13 @@ class Follower:
 
     def _follow(self, memory: PlannerMemory, seen: Seen) -> PlannerMemory:
         """With a plan for where the objects are now."""
-        plan, choice, last = memory.plan, memory.choice, memory.X_WO
-        assert plan is not None and choice is not None and last is not None
-        handover = self._handover(plan, seen)
+        plan, begins, choice, last = _at_hand(memory)
+        handover = seen.t + self.following.period - begins
         if handover >= plan.segments[0].duration:
             return replace(memory, mode=Mode.COMMITTED)
-        if not self._beyond_still(last, seen.X_WO) or self._is_elsewhere(plan, seen):
+        if not self._beyond_still(last, seen.X_WO) or self._is_elsewhere(memory, seen):
             return memory
-        brakes = braking(
-            plan, handover, plan.segments[0].duration, self.limits.accelerations(self.arm)
-        )
+        brakes = braking(plan, handover, self.limits.accelerations(self.arm))
         found = self.chooser.keep(choice, seen.X_WO, brakes.q[-1])
         if isinstance(found, PlanningOutcome):
             return self._stop(memory, seen, brakes, found)
@@ -199,53 +194,58 @@ class Follower:
 
     def _watch(self, memory: PlannerMemory, seen: Seen) -> PlannerMemory:
         """Stopped if an object that the rest of the plan is about has been moved."""
-        plan, choice, last = memory.plan, memory.choice, memory.X_WO
-        assert plan is not None and choice is not None and last is not None
-        ended = seen.status is not None and seen.status.ended and _past(memory, seen) > 0.0
-        if ended or _past(memory, seen) > self.tolerances.settling:
+        plan, begins, choice, last = _at_hand(memory)
+        ended = seen.status is not None and seen.status.ended and _past(plan, seen) > 0.0
+        if ended or _past(plan, seen) > self.tolerances.settling:
             return replace(memory, mode=Mode.WAITING)
-        assert plan.begins is not None
-        segment = plan.at(seen.t - plan.begins).segment
+        segment = plan.at(seen.t - begins).segment
         far, turned = self.chooser.apart(last, seen.X_WO)
         allowed = self.following
         moved = (far > allowed.moved_position) | (turned > allowed.moved_rotation)
-        for i in sorted(set(choice.demonstration.objects[segment:].tolist())):
-            if moved[i] and _past(memory, seen) < 0.0:
-                how_far = f"{1e3 * far[i]:.0f} mm and {1e3 * turned[i]:.0f} mrad"
-                reason = f"the {self.chooser.names[i]} was moved by {how_far} while the hand was at it"
-                acceleration = self.limits.accelerations(self.arm)
-                brakes = braking(plan, self._handover(plan, seen), plan.duration, acceleration)
-                stop = self._standstill(brakes, seen, failed(segment, reason))
-                return replace(memory, mode=Mode.STOPPING, plan=stop)
-        return memory
+        concerned = [i for i in set(choice.demonstration.objects[segment:].tolist()) if moved[i]]
+        if not concerned or _past(plan, seen) >= 0.0:
+            return memory
+        i = max(concerned, key=far.__getitem__)
+        how_far = f"{1e3 * far[i]:.0f} mm and {1e3 * turned[i]:.0f} mrad"
+        reason = f"the {self.chooser.names[i]} was moved by {how_far} while it was worked on"
+        handover = seen.t + self.following.period - begins
+        brakes = braking(plan, handover, self.limits.accelerations(self.arm))
+        stop = self._standstill(brakes, seen, failed(segment, reason))
+        return replace(memory, mode=Mode.STOPPING, plan=stop)
+
+    def _await_rest(self, memory: PlannerMemory, seen: Seen) -> PlannerMemory:
+        """Ended, or waiting to plan again, once the arm has come to rest."""
+        plan = memory.plan
+        assert plan is not None
+        assert plan.ending is not None
+        if _past(plan, seen) <= self.following.period:
+            return memory
+        return replace(memory, mode=Mode.ENDED if plan.ending.ended else Mode.WAITING)
 
     def _stop(
         self, memory: PlannerMemory, seen: Seen, brakes: Braking, outcome: PlanningOutcome
     ) -> PlannerMemory:
         """The arm brought to rest on its path, and everything tried again from there."""
         stop = self._standstill(brakes, seen, ExecutionStatus())
-        return replace(memory, mode=Mode.STOPPING, plan=stop, outcome=outcome, X_WO=None, wanted=True)
+        return replace(
+            memory, mode=Mode.STOPPING, plan=stop, outcome=outcome, X_WO=None, wanted=True
+        )
 
     def _standstill(self, brakes: Braking, seen: Seen, ending: ExecutionStatus) -> TimedPlan:
-        X_WE = self.arm.pose(brakes.q[[0, -1]])
+        X_WA, X_WB = self.arm.pose(brakes.q[[0, -1]])
         q, v = (np.concatenate([a, a[-1:]]) for a in (brakes.q, brakes.v))
         s = np.linspace(0.0, 1.0, len(q))
-        way = TimedSegment(*X_WE, PERIOD, s, np.zeros(len(q)), q, v, screw=False)
+        way = TimedSegment(X_WA, X_WB, PERIOD, s, np.zeros(len(q)), q, v, screw=False)
         return TimedPlan((way,), None, seen.t + self.following.period, ending)
 
     def _timed(self, choice: Choice) -> TimedPlan:
         poses = np.concatenate([self.arm.pose(choice.plan.q[:1]), choice.plan.guides])
         return time_plan(choice.plan, poses, self.arm, self.limits)
 
-    def _handover(self, plan: TimedPlan, seen: Seen) -> float:
-        """The plan's own time at which another one can take its place."""
-        assert plan.begins is not None
-        return seen.t + self.following.period - plan.begins
-
-    def _is_elsewhere(self, plan: TimedPlan, seen: Seen) -> bool:
+    def _is_elsewhere(self, memory: PlannerMemory, seen: Seen) -> bool:
         """Whether the arm is not where its plan says; then the executor ends the execution."""
-        assert plan.begins is not None
-        q = plan.at(seen.t - plan.begins).q
+        plan, begins, *_ = _at_hand(memory)
+        q = plan.at(seen.t - begins).q
         return worst_lag(self.tolerances.lags(self.arm), q, seen.q)[0]
 
     def _beyond_still(self, X_WA: Array, X_WB: Array) -> bool:
@@ -259,16 +259,24 @@ def _planned(memory: PlannerMemory, choice: Choice, plan: TimedPlan) -> PlannerM
     return replace(memory, mode=Mode.FOLLOWING, outcome=outcome, choice=choice, plan=plan)
 
 
-def _past(memory: PlannerMemory, seen: Seen) -> float:
-    """s since the end of the plan's time; negative before."""
-    plan = memory.plan
-    assert plan is not None and plan.begins is not None
+def _at_hand(memory: PlannerMemory) -> tuple[TimedPlan, float, Choice, Array]:
+    """The plan, when it begins, what it was chosen from, and the poses it is for."""
+    plan, choice, X_WO = memory.plan, memory.choice, memory.X_WO
+    assert plan is not None
+    assert plan.begins is not None
+    assert choice is not None
+    assert X_WO is not None
+    return plan, plan.begins, choice, X_WO
+
+
+def _past(plan: TimedPlan, seen: Seen) -> float:
+    """s since the end of a plan's time; negative before."""
+    assert plan.begins is not None
     return seen.t - plan.begins - plan.duration
 
 
 def _has_failed(memory: PlannerMemory, seen: Seen) -> bool:
     """Whether the execution of the plan at hand has failed."""
-    plan, status = memory.plan, seen.status
-    assert plan is not None and plan.begins is not None
-    from_before = seen.t <= plan.begins + 1e-9
+    _, begins, *_ = _at_hand(memory)
+    status, from_before = seen.status, seen.t <= begins + 1e-9
     return status is not None and status.ended and not from_before and bool(status.reason)

@@ -21,8 +21,8 @@ from drake_screw.typing import Array
 PERIOD = 4e-3
 """s, between samples."""
 
-LONGER, TRIED = 1.15, 12
-"""How many times as long a braking that is too hard is made, and how often at most."""
+LONGER = 1.15
+"""How many times as long a braking that is too hard is made."""
 
 OVERLAPS = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 """Parts of the braking time that may have to pass before the new motion sets out."""
@@ -54,33 +54,36 @@ class Braking:
         return self.q[k], self.v[k]
 
 
-def braking(plan: TimedPlan, t: float, last: float, acceleration: Array) -> Braking:
+def braking(plan: TimedPlan, t: float, acceleration: Array) -> Braking:
     """Slow down along a plan's own joint path, from its own velocity to rest.
 
     The rate at which the plan's time passes falls from 1 to 0 as 1 - 3u^2 + 2u^3, over the
     shortest time (to LONGER) in which no joint accelerates more than it may, or than it does on the
-    plan at that moment.
+    plan at that moment. Where the segment ends no later than that, it is followed to its end, at
+    which the arm rests.
 
     Args:
         plan: that the arm follows.
         t: s from its start, where the braking begins.
-        last: s from its start, beyond which the arm must not come; the plan rests there.
         acceleration: (n,) limits in rad/s^2 (or m/s^2).
     """
+    last = plan.end_of_segment(t)
     q, v = plan.path(np.array([t, min(t + PERIOD, last)]))
-    if t >= last or not np.abs(v).max() > 1e-9:
+    if t >= last or not np.abs(v[0]).max() > 0.0:
         return Braking(q[:1], 0.0 * q[:1])
     allowed = np.maximum(acceleration, np.abs(v[1] - v[0]) / PERIOD)
     time = max(1.5 * float(np.max(np.abs(v[0]) / acceleration)), 4 * PERIOD)
-    for _ in range(TRIED):
+    while time < last - t:
         m = int(np.ceil(time / PERIOD))
         u = np.arange(m + 1) / m
-        passed = np.minimum(t + m * PERIOD * (u - u**3 + 0.5 * u**4), last)
-        q, v = plan.path(passed)
+        q, v = plan.path(np.minimum(t + m * PERIOD * (u - u**3 + 0.5 * u**4), last))
         v = v * (1.0 - 3.0 * u**2 + 2.0 * u**3)[:, None]
         if (np.abs(np.diff(v, axis=0)) <= ROUNDING * PERIOD * allowed).all():
-            break
+            return Braking(q, v)
         time *= LONGER
+    m = int(np.ceil((last - t) / PERIOD))
+    q, v = plan.path(np.minimum(t + PERIOD * np.arange(m + 1), last))
+    v[-1] = 0.0
     return Braking(q, v)
 
 

@@ -8,7 +8,16 @@ import numpy as np
 from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import BasicVector, Context, EventStatus, LeafSystem, State
+from pydrake.multibody.tree import RigidBody
+from pydrake.systems.framework import (
+    BasicVector,
+    Context,
+    DiagramBuilder,
+    EventStatus,
+    LeafSystem,
+    OutputPort,
+    State,
+)
 
 from drake_screw.errors import DrakeScrewError
 from drake_screw.execution.choosing import Choice, Chooser
@@ -87,7 +96,6 @@ class ScrewPlanner(LeafSystem):
         self._trigger = self.DeclareVectorInputPort("trigger", 1)
         self._status = self.DeclareAbstractInputPort("execution_status", Value[object]())
         self._state = self.DeclareAbstractState(Value[object](PlannerMemory()))
-        self.DeclareInitializationUnrestrictedUpdateEvent(self._initialize)
         self.DeclarePeriodicUnrestrictedUpdateEvent(self.following.period, 0.0, self._step)
         memory = {self.abstract_state_ticket(self._state)}
         for name in ("plan", "outcome", "choice", "mode"):
@@ -111,10 +119,6 @@ class ScrewPlanner(LeafSystem):
 
     def _write_replans(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector([self._memory(context).replans])
-
-    def _initialize(self, context: Context, state: State) -> EventStatus:
-        state.get_mutable_abstract_state(int(self._state)).set_value(PlannerMemory())
-        return EventStatus.Succeeded()
 
     def _step(self, context: Context, state: State) -> EventStatus:
         n = self.chooser.arm.n
@@ -173,16 +177,46 @@ class ObjectPoses(LeafSystem):
         object_poses: abstract, a list of k `RigidTransform`, X_WO in the order of the bodies.
 
     Args:
-        plant: finalized.
-        names: of k bodies, as `MultibodyPlant.GetBodyByName` takes them.
+        bodies: k of the plant, once that is finalized.
     """
 
-    def __init__(self, plant: MultibodyPlant, names: Sequence[str]) -> None:
+    def __init__(self, bodies: Sequence[RigidBody]) -> None:
         super().__init__()
-        self._indices = [int(plant.GetBodyByName(name).index()) for name in names]
+        self._indices = [int(body.index()) for body in bodies]
         self._all = self.DeclareAbstractInputPort("body_poses", PoseList())
         self.DeclareAbstractOutputPort("object_poses", PoseList, self._write)
 
     def _write(self, context: Context, output: Value) -> None:
         poses = self._all.Eval(context)
         output.set_value([poses[i] for i in self._indices])
+
+
+def plan_inside(
+    builder: DiagramBuilder,
+    planner: ScrewPlanner,
+    plant: MultibodyPlant,
+    bodies: Sequence[RigidBody],
+    measured: OutputPort,
+    follower: LeafSystem,
+) -> None:
+    """Close the loop: a plant's bodies to the planner, and its plans to what executes them.
+
+    The planner's outcome, mode, choice and margins become output ports of the diagram.
+
+    Args:
+        builder: of the diagram.
+        planner: that is added to it.
+        plant: finalized.
+        bodies: the k objects.
+        measured: the arm's q and v (2n,).
+        follower: executes; it has the ports of `ScrewPlanExecutor`.
+    """
+    builder.AddNamedSystem("planner", planner)
+    poses = builder.AddNamedSystem("object_poses", ObjectPoses(bodies))
+    builder.Connect(plant.get_body_poses_output_port(), poses.get_input_port())
+    builder.Connect(poses.get_output_port(), planner.GetInputPort("object_poses"))
+    builder.Connect(measured, planner.GetInputPort("measured_state"))
+    builder.Connect(follower.GetOutputPort("status"), planner.GetInputPort("execution_status"))
+    builder.Connect(planner.GetOutputPort("plan"), follower.GetInputPort("plan"))
+    for name in ("outcome", "mode", "choice", "margins"):
+        builder.ExportOutput(planner.GetOutputPort(name), name)

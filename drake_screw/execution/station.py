@@ -33,6 +33,7 @@ from pydrake.systems.primitives import (
 from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.joint_path import JointPathSource
 from drake_screw.execution.motors import motorise
+from drake_screw.execution.screw_planner import ScrewPlanner, plan_inside
 from drake_screw.execution.wiring import drive, measured_state, resting
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.robot.ignored import let_links_touch
@@ -47,8 +48,9 @@ Follower = ScrewPlanExecutor | JointPathSource
 class Station:
     """A Drake diagram in which plans are executed; one serves any number of them.
 
-    The diagram's input port "plan" goes to the follower. Objects are free bodies that are locked
-    in place: what touches them meets resistance, and they do not move.
+    The diagram's input port "plan" goes to the follower; there is none where the diagram plans for
+    itself. Objects are free bodies that are locked in place: what touches them meets resistance,
+    and they do not move.
 
     Attributes:
         diagram, plant, scene_graph: discrete in time, the robot's gravity compensated.
@@ -88,10 +90,16 @@ class Station:
         positions = self.parked.copy()
         positions[self.columns] = q
         self.plant.SetPositions(context, positions)
-        for body, X in zip(self.objects, np.asarray(X_WO, dtype=float), strict=True):
-            self.plant.SetFreeBodyPose(context, body, RigidTransform(X))
+        self.place(root, X_WO)
+        for body in self.objects:
             body.Lock(context)
         return root
+
+    def place(self, root: Context, X_WO: ArrayLike) -> None:
+        """Put the objects at X_WO (k, 4, 4) in a context of the diagram."""
+        context = self.plant.GetMyMutableContextFromRoot(root)
+        for body, X in zip(self.objects, np.asarray(X_WO, dtype=float), strict=True):
+            self.plant.SetFreeBodyPose(context, body, RigidTransform(X))
 
 
 def build_station(
@@ -101,6 +109,7 @@ def build_station(
     objects: Sequence[ObjectConfig] = (),
     obstacles: Sequence[ObstacleConfig] = (),
     follow_screws: bool = True,
+    planner: ScrewPlanner | None = None,
     meshcat: Meshcat | None = None,
     time_step: float = 2.5e-3,
 ) -> Station:
@@ -111,6 +120,7 @@ def build_station(
             weighs nothing.
         table, objects, obstacles: of the workcell.
         follow_screws: execute with `ScrewPlanExecutor`; else play the joint path.
+        planner: plans inside the diagram, for where the plant has the objects.
         meshcat: to draw the simulation in.
         time_step: s, of the plant.
 
@@ -143,7 +153,10 @@ def build_station(
     builder.Connect(plant.get_state_output_port(), measure.get_input_port())
     builder.Connect(measure.get_output_port(), follower.GetInputPort("measured_state"))
     drive(builder, plant, added.models, moved, follower.GetOutputPort("desired_state"))
-    builder.ExportInput(follower.GetInputPort("plan"), "plan")
+    if planner is None:
+        builder.ExportInput(follower.GetInputPort("plan"), "plan")
+    else:
+        plan_inside(builder, planner, plant, bodies, measure.get_output_port(), follower)
     builder.ExportOutput(follower.GetOutputPort("status"), "status")
     builder.ExportOutput(follower.GetOutputPort("progress"), "progress")
     measured = LogVectorOutput(measure.get_output_port(), builder)

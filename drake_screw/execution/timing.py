@@ -160,6 +160,15 @@ class TimedPlan:
         s, rate, q, v = piece.at(np.array(min(left, piece.duration)))
         return SetPoint(i, float(s), float(rate), q, v)
 
+    def end_of_segment(self, t: float) -> float:
+        """When the segment that the plan is in at time t ends, in s from the plan's start."""
+        ends = np.cumsum([piece.duration for piece in self.segments])
+        return float(ends[min(int(np.searchsorted(ends, t)), len(ends) - 1)])
+
+    def shown(self, segment: int) -> int | None:
+        """The segment that an execution is said to be in: of one that is being ended, where."""
+        return segment if self.ending is None else self.ending.segment
+
     def sampled(self, period: float) -> tuple[Array, Array, Array]:
         """Times t (m,), joint path q (m, n) and velocities v (m, n), `period` seconds apart.
 
