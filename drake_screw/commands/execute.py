@@ -27,9 +27,15 @@ def execute(
     instance: Annotated[
         list[str] | None, instance_option("Just one, with the objects there.")
     ] = None,
+    live: Annotated[
+        bool,
+        typer.Option("--live", help="Serve a page to move the objects on while the arm plans."),
+    ] = False,
     graphviz: Annotated[
         bool, typer.Option("--graphviz", help="Print the simulated diagram for dot, and stop.")
     ] = False,
+    host: Annotated[str, typer.Option(help="Address on which that page listens.")] = "localhost",
+    port: Annotated[int | None, typer.Option(help="Port of the page. Default: a free one.")] = None,
     workers: WorkersOption = None,
     json: JsonOption = None,
     verbose: VerboseOption = False,
@@ -38,6 +44,8 @@ def execute(
 
     With the arm's dynamics and controllers. Reports joint limits, velocities, tracking, deviation
     from the screws and contacts; writes a table and a recording that plays in the browser.
+    With --live the diagram plans for itself, and follows objects that you move on its page
+    until the hand is at them; nothing is written.
 
     Exit code 0: something was executed as planned. 1: nothing was. 2: bad input.
     """
@@ -51,13 +59,25 @@ def execute(
             "--instance names the one to execute, and --per-region draws others",
             remedy="Leave out --per-region to execute that one, or --instance to have some drawn.",
         )
+    if live and (json is not None or per_region is not None or workers is not None):
+        given = (("--json", json), ("--per-region", per_region), ("--workers", workers))
+        named = next(name for name, value in given if value is not None)
+        raise DrakeScrewError(
+            f"--live simulates one execution as you watch, and has no use for {named}",
+            remedy=f"Leave out {named}, or --live.",
+        )
     output = Output(json)
     place = parse_instance(instance) if instance else None
     from drake_screw.runs import executions
 
     if graphviz:
-        print(executions.station_graphviz(run))
+        print(executions.station_graphviz(run, planning=live))
         return
+    if live:
+        from drake_screw.web.execution_page import execute_live
+
+        done_live = execute_live(run, instance=place, host=host, port=port, announce=output.say)
+        raise typer.Exit(0 if done_live else 1)
     count = 2 if per_region is None else per_region
     done = executions.execute(run, per_region=count, instance=place, workers=workers)
     output.present(done)

@@ -47,7 +47,7 @@ class Following:
         still_position, still_rotation: m and rad; an object that has moved farther is planned for
             anew.
         moved_position, moved_rotation: m and rad, by which an object may move after the first
-            guiding pose is reached.
+            guiding pose is reached; and beyond which it is in a new place.
     """
 
     period: float = 0.05
@@ -153,7 +153,8 @@ class Follower:
         """Whether to plan: it is wanted, and arm and objects are at rest."""
         wanted = memory.wanted
         if seen.asked is None and memory.mode is Mode.WAITING:
-            wanted = memory.X_WO is None or self._beyond_still(memory.X_WO, seen.X_WO)
+            last = memory.X_WO
+            wanted = last is None or bool(self._moved(last, seen.X_WO)[2].any())
         still = (np.abs(seen.v) <= STILL * self.arm.velocity_limits).all()
         rests = seen.t - memory.resting >= self.following.settling - 1e-9
         return bool(wanted and still and rests)
@@ -199,9 +200,7 @@ class Follower:
         if ended or _past(plan, seen) > self.tolerances.settling:
             return replace(memory, mode=Mode.WAITING)
         segment = plan.at(seen.t - begins).segment
-        far, turned = self.chooser.apart(last, seen.X_WO)
-        allowed = self.following
-        moved = (far > allowed.moved_position) | (turned > allowed.moved_rotation)
+        far, turned, moved = self._moved(last, seen.X_WO)
         concerned = [i for i in set(choice.demonstration.objects[segment:].tolist()) if moved[i]]
         if not concerned or _past(plan, seen) >= 0.0:
             return memory
@@ -247,6 +246,12 @@ class Follower:
         plan, begins, *_ = _at_hand(memory)
         q = plan.at(seen.t - begins).q
         return worst_lag(self.tolerances.lags(self.arm), q, seen.q)[0]
+
+    def _moved(self, X_WA: Array, X_WB: Array) -> tuple[Array, Array, Array]:
+        """(k,) m and rad that objects moved, and whether that is more than they may."""
+        far, turned = self.chooser.apart(X_WA, X_WB)
+        allowed = self.following
+        return far, turned, (far > allowed.moved_position) | (turned > allowed.moved_rotation)
 
     def _beyond_still(self, X_WA: Array, X_WB: Array) -> bool:
         far, turned = self.chooser.apart(X_WA, X_WB)

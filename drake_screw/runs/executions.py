@@ -7,12 +7,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from pydrake.geometry import Meshcat
 
 from drake_screw.assembly.placing import InstanceLike, placed
+from drake_screw.assembly.plan_chooser import PlanChooser
 from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.why_not import why_not
+from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import ModelError
-from drake_screw.execution import build_station, recording_html
+from drake_screw.execution import (
+    ScrewPlanner,
+    Station,
+    TimeLimits,
+    build_station,
+    recording_html,
+)
 from drake_screw.execution.motors import assumed_motors, immovable
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
@@ -76,7 +85,7 @@ def execute(
     """
     opened = open_run(run)
     setup, demonstrations = opened.setup, opened.demonstrations
-    _check_masses(setup)
+    check_masses(setup)
     planner = setup.careful_planner
 
     def plan(x_y_yaw: Array) -> Outcomes:
@@ -132,19 +141,61 @@ def execute(
     return Executions(folder, _assumed(setup), found)
 
 
-def station_graphviz(run: PathLike) -> str:
+def station_graphviz(run: PathLike, *, planning: bool = False) -> str:
     """The simulated diagram of a run as GraphViz text.
 
+    Args:
+        run: its directory.
+        planning: with a planner in it, as `planning_station` has it.
+
     Raises:
-        DrakeScrewError: the run cannot be read.
+        DrakeScrewError: the run cannot be read, or there is nothing to plan with.
     """
-    setup = open_run(run).setup
+    opened = open_run(run)
+    setup = opened.setup
+    if planning:
+        return planning_station(setup, opened.demonstrations).graphviz
     return build_station(
         setup.robot, table=setup.table, objects=setup.objects, obstacles=setup.obstacles
     ).graphviz
 
 
-def _check_masses(setup: Setup) -> None:
+def planning_station(
+    setup: Setup,
+    demonstrations: Sequence[Demonstration],
+    *,
+    limits: TimeLimits | None = None,
+    meshcat: Meshcat | None = None,
+) -> Station:
+    """A station that plans for itself: plant, planner and executor in one diagram.
+
+    Args:
+        setup: of the scenario.
+        demonstrations: to plan with.
+        limits: how fast plans are executed.
+        meshcat: to draw the simulation in.
+
+    Raises:
+        DrakeScrewError: the model lacks inertia.
+    """
+    check_masses(setup)
+    planner = ScrewPlanner(PlanChooser(setup, demonstrations), limits=limits)
+    return build_station(
+        setup.robot,
+        table=setup.table,
+        objects=setup.objects,
+        obstacles=setup.obstacles,
+        planner=planner,
+        meshcat=meshcat,
+    )
+
+
+def check_masses(setup: Setup) -> None:
+    """Make sure that the robot can be simulated.
+
+    Raises:
+        ModelError: a joint moves nothing that has inertia.
+    """
     workcell = setup.workcell
     positions = workcell.arm.full_positions(workcell.start)
     found = immovable(workcell.plant, workcell.robot, positions)
