@@ -22,7 +22,7 @@ from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.palette import ACCENT
 from drake_screw.web.server import PanelServer, check_address, warning
 
-SLOWLY = TimeLimits(speed=0.12, acceleration=0.5)
+SLOWLY = TimeLimits(speed=0.1, acceleration=0.3)
 """Slowly enough that there is time to move something."""
 PERIOD = 0.05
 """s, of the simulation, between looks at the sliders."""
