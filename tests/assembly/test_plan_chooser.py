@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pydrake.systems.analysis import Simulator
 
 from drake_screw import Setup, load_scenario
 from drake_screw.acquisition import Suggestion
 from drake_screw.assembly.plan_chooser import PlanChooser
-from drake_screw.execution import PlanningOutcome
+from drake_screw.execution import Phase, PlanningOutcome
+from drake_screw.execution.monitoring import apart
 from drake_screw.planning import Cause
+from drake_screw.runs.executions import planning_station
 from drake_screw.screws import exp, rotation_angle
 
 HERE, THERE = [[0.85, 0.3, 0.0]], [[0.9, 0.36, 0.0]]
@@ -103,3 +106,36 @@ def test_turning_a_bowl_about_its_axis_is_not_moving_it(setup, chooser) -> None:
 def test_without_demonstrations_there_is_nothing_to_choose_from(setup) -> None:
     with pytest.raises(ValueError, match="at least one demonstration"):
         PlanChooser(setup, ())
+
+
+def test_in_a_station_a_bowl_that_is_pushed_is_poured_into_where_it_ends(
+    setup, demonstrations
+) -> None:
+    """10 cm in half a second, with the arm's dynamics."""
+    station = planning_station(setup, demonstrations[:1])
+    arm, planner = station.arm, station.diagram.GetSubsystemByName("planner")
+    root = station.context(setup.workcell.start, setup.area.X_WO(HERE))
+    simulator = Simulator(station.diagram, root)
+    simulator.AdvanceTo(0.8)
+    pushed = np.array([0.06, 0.08, 0.0])
+    for part in np.linspace(0.1, 1.0, 10):
+        station.place(root, setup.area.X_WO(HERE + part * pushed))
+        simulator.AdvanceTo(root.get_time() + 0.05)
+    X_WO = setup.area.X_WO(HERE + pushed)
+
+    def says(port: str):
+        return station.diagram.GetOutputPort(port).Eval(root)
+
+    while not says("status").ended and root.get_time() < 15.0:
+        simulator.AdvanceTo(root.get_time() + 0.25)
+    assert says("status").phase is Phase.DONE
+    assert planner.GetOutputPort("replans").Eval(planner.GetMyContextFromRoot(root))[0] >= 8
+    choice = says("choice")
+    X_WG = setup.symmetries.guides(choice.demonstration, X_WO, choice.plan.angles)[-1]
+    log, commands = station.measured.FindLog(root), station.desired.FindLog(root)
+    far, turned = apart(arm.pose(log.data()[: arm.n, -1]), X_WG)
+    assert far < 5e-3
+    assert turned < 20e-3
+    v = commands.data()[arm.n :, np.diff(commands.sample_times(), prepend=-1.0) > 1e-6].T
+    assert np.abs(np.diff(v, axis=0) / arm.velocity_limits).max() < 0.05
+    assert says("margins").min() > 0.0
