@@ -19,6 +19,7 @@ from drake_screw.typing import Array
 CHECKED = (
     2  # of that many samples of a way to the first guiding pose, one is checked for collisions
 )
+HARD = 2.0  # times the acceleration of plans, with which an execution that has failed is braked
 STILL = 0.01  # part of its velocity limit at which a joint counts as still
 
 
@@ -208,7 +209,7 @@ class Follower:
         how_far = f"{1e3 * far[i]:.0f} mm and {1e3 * turned[i]:.0f} mrad"
         reason = f"the {self.chooser.names[i]} was moved by {how_far} while it was worked on"
         handover = seen.t + self.following.period - begins
-        brakes = braking(plan, handover, self.limits.accelerations(self.arm))
+        brakes = braking(plan, handover, HARD * self.limits.accelerations(self.arm))
         stop = self._standstill(brakes, seen, failed(segment, reason))
         return replace(memory, mode=Mode.STOPPING, plan=stop)
 
