@@ -120,14 +120,18 @@ def build_station(
             weighs nothing.
         table, objects, obstacles: of the workcell.
         follow_screws: execute with `ScrewPlanExecutor`; else play the joint path.
-        planner: plans inside the diagram, for where the plant has the objects.
+        planner: plans inside the diagram, for where the plant has the objects. Its plans go over
+            into one another, which takes the executor that follows screws.
         meshcat: to draw the simulation in.
         time_step: s, of the plant.
 
     Raises:
         ModelError: the model or a mesh cannot be read, or the model lacks a name the configuration
             asks for.
+        ValueError: there is a planner, and the joint path is to be played.
     """
+    if planner is not None and not follow_screws:
+        raise ValueError("a planner needs an executor that follows screws, not a joint path")
     builder = DiagramBuilder()
     config = MultibodyPlantConfig(time_step=time_step, contact_model="point")
     plant, scene_graph = AddMultibodyPlant(config, builder)

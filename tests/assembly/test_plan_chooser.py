@@ -9,7 +9,7 @@ from pydrake.systems.analysis import Simulator
 from drake_screw import Setup, load_scenario
 from drake_screw.acquisition import Suggestion
 from drake_screw.assembly.plan_chooser import PlanChooser
-from drake_screw.execution import Phase, PlanningOutcome
+from drake_screw.execution import Phase, PlanningOutcome, ScrewPlanner, build_station
 from drake_screw.execution.monitoring import apart
 from drake_screw.planning import Cause
 from drake_screw.runs.executions import planning_station
@@ -139,3 +139,8 @@ def test_in_a_station_a_bowl_that_is_pushed_is_poured_into_where_it_ends(
     v = commands.data()[arm.n :, np.diff(commands.sample_times(), prepend=-1.0) > 1e-6].T
     assert np.abs(np.diff(v, axis=0) / arm.velocity_limits).max() < 0.05
     assert says("margins").min() > 0.0
+
+
+def test_plans_that_go_over_into_one_another_are_not_played_by_the_clock(setup, chooser) -> None:
+    with pytest.raises(ValueError, match="an executor that follows screws"):
+        build_station(setup.robot, planner=ScrewPlanner(chooser), follow_screws=False)
