@@ -34,7 +34,7 @@ def test_a_bowl_that_is_dragged_is_poured_into_where_it_comes_to_rest(
         browser.until(lambda: "followed" in browser.text("#mode"))
         browser.slide("#objects tr:nth-child(1) input", 0.91)
         browser.slide("#objects tr:nth-child(2) input", 0.36)
-        browser.until(lambda: browser.node(BOWL)["matrix"][1, 3] == pytest.approx(0.36, abs=1e-3))
+        browser.until(lambda: -browser.node(BOWL)["matrix"][2, 3] == pytest.approx(0.36, abs=1e-3))
         assert browser.text("#mode").startswith("The arm approaches")
         for segment in range(2, 8):
             browser.until(lambda s=segment: reached(browser.text("#headline")) >= s)
