@@ -1,8 +1,9 @@
 """What it costs to execute plans, and to check them for collisions.
 
 One demonstration by the simulated teacher, on a shipped scenario: the computing time of a control
-period, the executor beside the joint path played by the clock, time laws, simulation, and the
-collision check of plans that keep the limits. Takes about a minute.
+period, the executor beside the joint path played by the clock, time laws, simulation, a planner's
+first plan and its replans while the arm approaches, and the collision check of plans that keep the
+limits. Takes about a minute.
 
     python benchmarks/executor.py [--scenario pouring] [--plans 400] [--seed 0] [--json FILE]
 """
@@ -13,6 +14,7 @@ import argparse
 import json
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,16 +23,20 @@ from pydrake.common.value import Value
 from pydrake.systems.analysis import Simulator
 
 from drake_screw.acquisition import Suggestion
+from drake_screw.assembly.plan_chooser import PlanChooser
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.execution import (
+    Following,
     ScrewPlanExecutor,
     TimedPlan,
     TimeLimits,
+    Tolerances,
     build_station,
     simulate,
     time_plan,
 )
+from drake_screw.execution.following import Follower, PlannerMemory, Seen
 from drake_screw.planning.plan_checker import PlanChecker
 from drake_screw.robot import Arm
 from drake_screw.scenario.loader import load_scenario
@@ -74,6 +80,44 @@ def control_periods(arm: Arm, plan: TimedPlan) -> np.ndarray:
     return np.array(spent)
 
 
+def replans(setup: Setup, demonstration: Demonstration, count: int, seed: int) -> dict[str, float]:
+    """What a `ScrewPlanner` takes to plan, and to follow an object that is pushed, in ms.
+
+    The arm is anywhere on its approach, and the object up to 5 cm to either side.
+    """
+    chooser, rng = PlanChooser(setup, [demonstration]), np.random.default_rng(seed)
+    follower = Follower(chooser, Following(), TimeLimits(), Tolerances())
+    X_WO, start = demonstration.X_WO, setup.workcell.start
+    still = np.zeros(len(start))
+    resting = replace(PlannerMemory(), X_WO_rest=X_WO, resting=0.0)
+    asked = Seen(1.0, X_WO, start, still)
+    follower.step(resting, asked)
+    first, planned = seconds(lambda: follower.step(resting, asked))
+    plan = planned.plan
+    if plan is None:
+        raise SystemExit(f"no plan to follow with: {planned.outcome}")
+    wall, spent = [], []
+    while len(wall) < count:
+        t = plan.begins + rng.uniform(0.1, 0.9) * plan.segments[0].duration
+        pushed = X_WO.copy()
+        pushed[..., :2, 3] += rng.uniform(-0.05, 0.05, 2)
+        (q,), (v,) = plan.path(np.array([t - plan.begins]))
+        seen = Seen(t, pushed, q, v)
+        began = time.process_time()
+        took, followed = seconds(lambda seen=seen: follower.step(planned, seen))
+        if followed.replans:
+            spent.append(time.process_time() - began)
+            wall.append(took)
+    wall_ms, spent_ms = 1e3 * np.array(wall[2:]), 1e3 * np.array(spent[2:])
+    return {
+        "first_plan": 1e3 * first,
+        "median": float(np.median(wall_ms)),
+        "p99": float(np.quantile(wall_ms, 0.99)),
+        "computing_median": float(np.median(spent_ms)),
+        "computing_p99": float(np.quantile(spent_ms, 0.99)),
+    }
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scenario", default="pouring")
@@ -112,6 +156,13 @@ def main() -> None:
     print(
         f"control period             {period['mean']:8.3f} ms computing, median "
         f"{period['median']:.3f}, 99 % below {period['p99']:.3f}"
+    )
+    result["replan_ms"] = replan = replans(setup, demonstration, 200, arguments.seed)
+    print(f"first plan of a planner    {replan['first_plan']:8.1f} ms, with its time law")
+    print(
+        f"replan on the approach     {replan['median']:8.1f} ms by the clock, 99 % below "
+        f"{replan['p99']:.1f}; {replan['computing_median']:.1f} ms computing, 99 % below "
+        f"{replan['computing_p99']:.1f}"
     )
     print(f"\n{'':27}{'simulation':>12}{'tracking error':>26}{'path error':>16}")
     for name, follow in (("executor", True), ("joint path by the clock", False)):

@@ -19,9 +19,10 @@ from drake_screw.lazily import lazily
 
 if TYPE_CHECKING:
     from drake_screw import screws
+    from drake_screw.assembly.plan_chooser import PlanChooser
     from drake_screw.assembly.setup import Setup
     from drake_screw.demonstrations import Demonstration
-    from drake_screw.execution import ScrewPlanExecutor
+    from drake_screw.execution import ScrewPlanExecutor, ScrewPlanner
     from drake_screw.planning import Outcomes
     from drake_screw.runs.run import new_run, open_run
     from drake_screw.scenario.loader import load_scenario
@@ -33,10 +34,12 @@ __all__ = [
     "DrakeScrewError",
     "ModelError",
     "Outcomes",
+    "PlanChooser",
     "RecordingError",
     "RunDirectoryError",
     "ScenarioError",
     "ScrewPlanExecutor",
+    "ScrewPlanner",
     "Setup",
     "__version__",
     "load_scenario",
@@ -50,7 +53,9 @@ _of_modules = lazily(
     {
         "Demonstration": "drake_screw.demonstrations",
         "Outcomes": "drake_screw.planning",
+        "PlanChooser": "drake_screw.assembly.plan_chooser",
         "ScrewPlanExecutor": "drake_screw.execution",
+        "ScrewPlanner": "drake_screw.execution",
         "Setup": "drake_screw.assembly.setup",
         "load_scenario": "drake_screw.scenario.loader",
         "new_run": "drake_screw.runs.run",

@@ -57,9 +57,7 @@ class RankedPlan:
 
         It is 0.5 of a joint without limits.
         """
-        part, some = np.full(self.arm.n, 0.5), ~self.arm.endless
-        ranges = self.arm.upper[some] - self.arm.lower[some]
-        part[some] = self.arm.margin(self.plan.q).min(axis=0)[some] / ranges
+        part = self.arm.margin_parts(self.plan.q)
         return dict(zip(self.arm.joint_names, part.tolist(), strict=True))
 
     @property
@@ -131,7 +129,30 @@ def best_plan(
     most: int = 5,
     speed: TimeLimits | None = None,
 ) -> RankedPlan:
-    """The plan with the largest margin that touches nothing.
+    """The best of `ranked_plans`, with the others as its alternatives; arguments as there.
+
+    Raises:
+        ScenarioError: there is no plan; it says why.
+    """
+    X_WO = np.asarray(X_WO, dtype=float)
+    found = ranked_plans(ways, demonstrations, X_WO, names, most, speed)
+    if not found:
+        raise ScenarioError(
+            f"no demonstration gives a plan there: {why_none(ways, demonstrations, X_WO)}",
+            remedy="Choose another instance, or carry the run on with more demonstrations.",
+        )
+    return replace(found[0], alternatives=found[1:])
+
+
+def ranked_plans(
+    ways: Sequence[Way],
+    demonstrations: Sequence[Demonstration],
+    X_WO: Array,
+    names: Sequence[str],
+    most: int = 5,
+    speed: TimeLimits | None = None,
+) -> tuple[RankedPlan, ...]:
+    """The plans that touch nothing, that with the largest margin first.
 
     Of several with the same margin the one with the largest clearance, then the shortest.
 
@@ -144,13 +165,12 @@ def best_plan(
         demonstrations: D of them.
         X_WO: (k, 4, 4) the objects.
         names: of the k objects.
-        most: plans to return, the best one and its alternatives.
+        most: plans to return.
         speed: how fast they are to be executed.
 
-    Raises:
-        ScenarioError: there is no plan; it says why.
+    Returns:
+        As many as there are, `most` of them at most.
     """
-    X_WO = np.asarray(X_WO, dtype=float)
 
     def ranked(way: Way, plans: list[tuple[Demonstration, Plan]]) -> list[RankedPlan]:
         found = []
@@ -171,12 +191,7 @@ def best_plan(
     found.sort(key=_best_first)
     if len({one.margin for one in found}) < len(found):
         found.sort(key=lambda one: (-one.margin, -one.clearance, one.length))
-    if not found:
-        raise ScenarioError(
-            f"no demonstration gives a plan there: {why_none(ways, demonstrations, X_WO)}",
-            remedy="Choose another instance, or carry the run on with more demonstrations.",
-        )
-    return replace(found[0], alternatives=tuple(found[1:most]))
+    return tuple(found[:most])
 
 
 def _best_first(one: RankedPlan) -> tuple[float, float]:

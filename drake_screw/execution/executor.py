@@ -78,15 +78,17 @@ class ScrewPlanExecutor(LeafSystem):
     notice that it does not.
 
     Input ports:
-        plan: abstract, a `TimedPlan` or None. A plan that is not the one at hand begins at once.
+        plan: abstract, a `TimedPlan` or None. A plan that is not the one at hand begins at once, or
+            at the time that it names: the one at hand is followed until then, and the command goes
+            on from where it is.
         measured_state: (2n,) measured q in rad (or m), then v.
 
     Output ports:
         desired_state: (2n,) q and v for the arm's position control. Between control steps q
             advances at v. It holds still when nothing runs, after a blockage where the arm is.
         status: abstract, `ExecutionStatus`: idle; running; done, once the measured end effector is
-            at the last guiding pose; failed, with segment and reason. It stays so until another
-            plan comes.
+            at the last guiding pose; failed, with segment and reason; or what the plan says that
+            it ends with. It stays so until another plan comes.
         progress: (1,) part of the plan's time that is over, 0 to 1.
 
     Args:
@@ -106,7 +108,7 @@ class ScrewPlanExecutor(LeafSystem):
         self._lags, self._units = self.tolerances.lags(arm), arm.units
         self._plan = self.DeclareAbstractInputPort("plan", Value[object]())
         self._measured = self.DeclareVectorInputPort("measured_state", 2 * arm.n)
-        rest = _Memory(None, 0.0, 0.0, arm.middle, np.zeros(arm.n), ExecutionStatus())
+        rest = _Memory(None, 0.0, -np.inf, arm.middle, np.zeros(arm.n), ExecutionStatus())
         self._state = self.DeclareAbstractState(Value[object](rest))
         self.DeclareInitializationUnrestrictedUpdateEvent(self._initialize)
         self.DeclarePeriodicUnrestrictedUpdateEvent(self.control.period, 0.0, self._step)
@@ -136,6 +138,8 @@ class ScrewPlanExecutor(LeafSystem):
         return memory.q + elapsed * memory.v
 
     def _initialize(self, context: Context, state: State) -> EventStatus:
+        if 0.0 <= context.get_time() - self._memory(context).updated < 1.5 * self.control.period:
+            return EventStatus.DidNothing()  # it goes on from a copy
         q = self._measured.Eval(context)[: self.arm.n]
         rest = _Memory(None, 0.0, context.get_time(), q, np.zeros(self.arm.n), ExecutionStatus())
         state.get_mutable_abstract_state(int(self._state)).set_value(rest)
@@ -148,10 +152,11 @@ class ScrewPlanExecutor(LeafSystem):
         memory = replace(
             memory, q=self._command(memory, context), v=np.zeros(self.arm.n), updated=t
         )
-        if plan is not memory.plan:
+        if plan is not memory.plan and _due(plan, t):
             status = beginning(plan, self.arm, measured, self.tolerances)
-            memory = _Memory(plan, t, t, memory.q, memory.v, status)
-            if plan is not None and status.phase is Phase.RUNNING:
+            began = t if plan is None or plan.begins is None else plan.begins
+            memory = _Memory(plan, began, t, memory.q, memory.v, status)
+            if plan is not None and plan.begins is None and status.phase is Phase.RUNNING:
                 memory = replace(memory, q=plan.segments[0].q[0])
         if memory.status.phase is Phase.RUNNING:
             memory = self._follow(memory, measured)
@@ -166,7 +171,7 @@ class ScrewPlanExecutor(LeafSystem):
         now, ahead = plan.at(t), plan.at(t + self.control.period / 2.0)
         memory = replace(
             memory,
-            status=ExecutionStatus(Phase.RUNNING, now.segment),
+            status=ExecutionStatus(Phase.RUNNING, plan.shown(now.segment)),
             progress=min(t / plan.duration, 1.0),
         )
         late, joint, lag = worst_lag(self._lags, q, measured)
@@ -204,6 +209,11 @@ class ScrewPlanExecutor(LeafSystem):
         least = np.maximum(-arm.velocity_limits, (arm.lower - q) / period)
         most = np.minimum(arm.velocity_limits, (arm.upper - q) / period)
         return np.clip(v, np.minimum(least, 0.0), np.maximum(most, 0.0))
+
+
+def _due(plan: TimedPlan | None, t: float) -> bool:
+    """Whether a plan's time has come."""
+    return plan is None or plan.begins is None or t >= plan.begins - 1e-9
 
 
 def _parameters(arm: Arm, control: Control) -> DifferentialInverseKinematicsParameters:

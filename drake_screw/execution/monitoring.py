@@ -123,6 +123,8 @@ def arrival(
     """How a plan ended, at time t with the end effector measured at X_WE; None if it has not."""
     if t < plan.duration:
         return None
+    if plan.ending is not None:
+        return plan.ending
     last = len(plan.segments) - 1
     far, turned = apart(X_WE, plan.segments[last].X_WB, plan.free_axis)
     if far <= tolerances.final_position and turned <= tolerances.final_rotation:

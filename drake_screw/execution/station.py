@@ -36,6 +36,7 @@ from drake_screw.execution.executor import ScrewPlanExecutor
 from drake_screw.execution.free_objects import SETTLING, let_stand, unsettled
 from drake_screw.execution.joint_path import JointPathSource
 from drake_screw.execution.motors import motorise
+from drake_screw.execution.screw_planner import ScrewPlanner, plan_inside
 from drake_screw.execution.wiring import drive, encoders, free_bodies, measured_state, resting
 from drake_screw.robot import Arm, ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
 from drake_screw.robot.ignored import let_links_touch
@@ -49,9 +50,9 @@ Follower = ScrewPlanExecutor | JointPathSource
 class Station:
     """A Drake diagram in which plans are executed; one serves any number of them.
 
-    The diagram's input port "plan" goes to the follower. Objects are free bodies. They are locked
-    in place, so that what touches them meets resistance and they do not move; or they stand on
-    what is under them, and can be pushed.
+    The diagram's input port "plan" goes to the follower; there is none where the diagram plans for
+    itself. Objects are free bodies. They are locked in place, so that what touches them meets
+    resistance and they do not move; or they stand on what is under them, and can be pushed.
 
     Attributes:
         diagram, plant, scene_graph: discrete in time, the robot's gravity compensated.
@@ -107,11 +108,17 @@ class Station:
         positions = self.parked.copy()
         positions[self.columns] = np.asarray(q) + offset
         self.plant.SetPositions(context, positions)
-        for body, X in zip(self.objects, np.asarray(X_WO, dtype=float), strict=True):
-            self.plant.SetFreeBodyPose(context, body, RigidTransform(X))
-            if not self.free_objects:
+        self.place(root, X_WO)
+        if not self.free_objects:
+            for body in self.objects:
                 body.Lock(context)
         return root
+
+    def place(self, root: Context, X_WO: ArrayLike) -> None:
+        """Put the objects at X_WO (k, 4, 4) in a context of the diagram."""
+        context = self.plant.GetMyMutableContextFromRoot(root)
+        for body, X in zip(self.objects, np.asarray(X_WO, dtype=float), strict=True):
+            self.plant.SetFreeBodyPose(context, body, RigidTransform(X))
 
     def settled(self, q: ArrayLike, X_WO: ArrayLike) -> tuple[Array, str]:
         """Where objects come to rest that are set down, before anything moves.
@@ -147,6 +154,7 @@ def build_station(
     obstacles: Sequence[ObstacleConfig] = (),
     follow_screws: bool = True,
     free_objects: bool = False,
+    planner: ScrewPlanner | None = None,
     meshcat: Meshcat | None = None,
     time_step: float = 2.5e-3,
 ) -> Station:
@@ -158,13 +166,18 @@ def build_station(
         table, objects, obstacles: of the workcell.
         follow_screws: execute with `ScrewPlanExecutor`; else play the joint path.
         free_objects: objects can be pushed; else they are locked in place.
+        planner: plans inside the diagram, for where the plant has the objects. Its plans go over
+            into one another, which takes the executor that follows screws.
         meshcat: to draw the simulation in.
         time_step: s, of the plant.
 
     Raises:
         ModelError: the model or a mesh cannot be read, or the model lacks a name the configuration
             asks for.
+        ValueError: there is a planner, and the joint path is to be played.
     """
+    if planner is not None and not follow_screws:
+        raise ValueError("a planner needs an executor that follows screws, not a joint path")
     builder = DiagramBuilder()
     contact = "hydroelastic_with_fallback" if free_objects else "point"
     config = MultibodyPlantConfig(time_step=time_step, contact_model=contact)
@@ -197,7 +210,10 @@ def build_station(
     builder.Connect(read, follower.GetInputPort("measured_state"))
     builder.Connect(follower.GetOutputPort("desired_state"), command.get_input_port(0))
     drive(builder, plant, added.models, moved, command.get_output_port())
-    builder.ExportInput(follower.GetInputPort("plan"), "plan")
+    if planner is None:
+        builder.ExportInput(follower.GetInputPort("plan"), "plan")
+    else:
+        plan_inside(builder, planner, plant, bodies, read, follower)
     builder.ExportOutput(follower.GetOutputPort("status"), "status")
     builder.ExportOutput(follower.GetOutputPort("progress"), "progress")
     measured = LogVectorOutput(measure.get_output_port(), builder)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.execution.smooth_law import smooth_law, spline
+from drake_screw.execution.status import ExecutionStatus
 from drake_screw.planning import Plan
 from drake_screw.robot import Arm
 from drake_screw.screws import inverse, log
@@ -39,6 +40,10 @@ class TimeLimits:
     acceleration: float = 2.0
     smoothing: float = 0.1
     slide_acceleration: float = 0.5
+
+    def accelerations(self, arm: Arm) -> Array:
+        """(n,) rad/s^2 or m/s^2, of an arm's joints."""
+        return np.where(arm.slides, self.slide_acceleration, self.acceleration)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,10 +126,16 @@ class TimedPlan:
         segments: in their order; none for an empty plan.
         free_axis: (3,) in the end effector's frame, about which its roll is free: of the screws it
             follows position and that axis. None where it follows them as a whole.
+        begins: s, the time at which it is to be followed, with the plan before it until then; None
+            for at once.
+        ending: the status that it ends with whatever it arrives at, of a motion that only brings
+            the arm to rest. None where it is done on arrival.
     """
 
     segments: tuple[TimedSegment, ...]
     free_axis: Array | None = None
+    begins: float | None = None
+    ending: ExecutionStatus | None = None
 
     def __deepcopy__(self, _: object) -> TimedPlan:
         return self
@@ -158,6 +169,15 @@ class TimedPlan:
             left -= piece.duration
         s, rate, q, v = piece.at(np.array(min(left, piece.duration)))
         return SetPoint(i, float(s), float(rate), q, v)
+
+    def end_of_segment(self, t: float) -> float:
+        """When the segment that the plan is in at time t ends, in s from the plan's start."""
+        ends = np.cumsum([piece.duration for piece in self.segments])
+        return float(ends[min(int(np.searchsorted(ends, t)), len(ends) - 1)])
+
+    def shown(self, segment: int) -> int | None:
+        """The segment that an execution is said to be in: of one that is being ended, where."""
+        return segment if self.ending is None else self.ending.segment
 
     def sampled(self, period: float) -> tuple[Array, Array, Array]:
         """Times t (m,), joint path q (m, n) and velocities v (m, n), `period` seconds apart.
@@ -219,8 +239,7 @@ def _timed(
         still = np.zeros((2, arm.n))
         return TimedSegment(X_WA, X_WB, limits.smoothing, ends, 0.0 * ends, q[[0, -1]], still)
     velocity = limits.speed * arm.velocity_limits
-    acceleration = np.where(arm.slides, limits.slide_acceleration, limits.acceleration)
-    law = smooth_law(spline(s, q), velocity, acceleration, limits.smoothing)
+    law = smooth_law(spline(s, q), velocity, limits.accelerations(arm), limits.smoothing)
     return TimedSegment(X_WA, X_WB, law.period, law.s, law.rate, law.q, law.v)
 
 

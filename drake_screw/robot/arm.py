@@ -179,6 +179,16 @@ class Arm:
         q = np.asarray(q, dtype=float)
         return np.minimum(q - self.lower, self.upper - q)
 
+    def margin_parts(self, q: ArrayLike) -> Array:
+        """(n,) how near each joint comes to a limit along q (m, n), in parts of its range.
+
+        It is 0 at the limit, 0.5 at most, and 0.5 of a joint without limits.
+        """
+        part, some = np.full(self.n, 0.5), ~self.endless
+        ranges = self.upper[some] - self.lower[some]
+        part[some] = self.margin(q).min(axis=0)[some] / ranges
+        return part
+
     @property
     def slides(self) -> Array:
         """(n,) whether each joint is prismatic."""

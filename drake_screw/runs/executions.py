@@ -8,13 +8,22 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from pydrake.geometry import Meshcat
 
 from drake_screw.assembly.placing import InstanceLike, placed
+from drake_screw.assembly.plan_chooser import PlanChooser
 from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.stations import check_masses, check_standing, station_config
 from drake_screw.assembly.ways import why_failed
-from drake_screw.execution import recording_html
+from drake_screw.demonstrations import Demonstration
+from drake_screw.execution import (
+    ScrewPlanner,
+    Station,
+    TimeLimits,
+    build_station,
+    recording_html,
+)
 from drake_screw.execution.motors import assumed_motors
 from drake_screw.execution.parallel import Job, execute_all
 from drake_screw.execution.simulate import Execution
@@ -180,13 +189,50 @@ def _executed(
     return done
 
 
-def station_graphviz(run: PathLike, *, free_objects: bool = False) -> str:
+def station_graphviz(run: PathLike, *, free_objects: bool = False, planning: bool = False) -> str:
     """The simulated diagram of a run as GraphViz text.
 
+    Args:
+        run: its directory.
+        planning: with a planner in it, as `planning_station` has it.
+
     Raises:
-        DrakeScrewError: the run cannot be read.
+        DrakeScrewError: the run cannot be read, or there is nothing to plan with.
     """
-    return station_config(open_run(run).setup, free_objects=free_objects).build().graphviz
+    opened = open_run(run)
+    if planning:
+        return planning_station(opened.setup, opened.demonstrations).graphviz
+    return station_config(opened.setup, free_objects=free_objects).build().graphviz
+
+
+def planning_station(
+    setup: Setup,
+    demonstrations: Sequence[Demonstration],
+    *,
+    limits: TimeLimits | None = None,
+    meshcat: Meshcat | None = None,
+) -> Station:
+    """A station that plans for itself: plant, planner and executor in one diagram.
+
+    Args:
+        setup: of the scenario.
+        demonstrations: to plan with.
+        limits: how fast plans are executed.
+        meshcat: to draw the simulation in.
+
+    Raises:
+        DrakeScrewError: the model lacks inertia, or there are several arms.
+    """
+    check_masses(setup.workcell)
+    planner = ScrewPlanner(PlanChooser(setup, demonstrations), limits=limits)
+    return build_station(
+        setup.robot,
+        table=setup.table,
+        objects=setup.objects,
+        obstacles=setup.obstacles,
+        planner=planner,
+        meshcat=meshcat,
+    )
 
 
 def _assumed(setup: Setup) -> tuple[str, ...]:

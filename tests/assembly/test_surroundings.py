@@ -192,6 +192,9 @@ def test_a_run_keeps_its_obstacles_and_notices_another_mesh(
     page = (done.folder / "executions.html").read_text()
     assert len(page) > 1e6
     assert "executor" in station_graphviz(folder)
+    assert "planner" not in station_graphviz(folder)
+    loop = station_graphviz(folder, planning=True)
+    assert all(name in loop for name in ("planner", "object_poses", "executor"))
     file.write_text(CUBE.replace("v 1 1 1", "v 1 1 2"))
     with pytest.raises(RunDirectoryError, match=r"the mesh .*jug\.obj has changed since this run"):
         open_run(folder)

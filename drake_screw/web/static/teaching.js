@@ -1,24 +1,5 @@
 // The panel at which a person leads the arm.
-const dragging = new Set();
 let rows = null;
-function slider(table, name, low, high, changed) {
-  const row = make("tr"), input = make("input"), value = make("td"), margin = make("td");
-  Object.assign(input, { type: "range", min: low, max: high, step: (high - low) / 2000 });
-  input.setAttribute("aria-label", name);
-  let last = 0, later;
-  const pass = () => { last = Date.now(); changed(Number(input.value)); };
-  input.oninput = () => {
-    clearTimeout(later);
-    if (Date.now() - last > 30) pass(); else later = setTimeout(pass, 30);
-  };
-  input.onpointerdown = () => dragging.add(input);
-  input.onpointerup = () => dragging.delete(input);
-  const cell = make("td");
-  cell.append(input);
-  row.append(make("td", name), cell, value, margin);
-  table.append(row);
-  return { row, input, value, margin };
-}
 // While nobody is asked for anything, the lists of a state are empty.
 function build(state) {
   rows = {
