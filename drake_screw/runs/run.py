@@ -119,9 +119,8 @@ class Run:
         Interrupting it leaves a directory that can be carried on.
 
         Args:
-            listeners: each is called with every event, in this order, and with `RegionsEvaluated`
-                for each batch of instances within a round, and `InstancesExecuted` as they are
-                executed, which are not yielded.
+            listeners: each is called with every event, in this order, and within a round with
+                `RegionsEvaluated` and `InstancesExecuted`, which are not yielded.
 
         Yields:
             Events; the last is `Finished`.

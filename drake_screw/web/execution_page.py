@@ -15,7 +15,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.execution import ExecutionStatus, Mode, Phase, TimeLimits
 from drake_screw.runs.executions import planning_station
 from drake_screw.runs.run import open_run
-from drake_screw.tasks import AXES
+from drake_screw.tasks import ANGLES
 from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.visualization.meshcat_page import render
@@ -99,11 +99,12 @@ class LiveExecution:
 
     def step(self) -> None:
         """A period of the simulation, with the objects on their way to the sliders."""
-        most = PERIOD * np.array([PUSH[1] if axis == "yaw" else PUSH[0] for axis in AXES])
+        area = self._setup.area
+        most = PERIOD * np.array([PUSH[axis in ANGLES] for axis in area.axes])
         step = np.clip(self.wanted - self.coordinates, -most, most)
         if step.any():
             self.coordinates = self.coordinates + step
-            self._station.place(self._root, self._setup.area.X_WO(self.coordinates))
+            self._station.place(self._root, area.X_WO(self.coordinates))
         if not self.running:
             self._station.diagram.ForcedPublish(self._root)
             return
@@ -129,11 +130,11 @@ class LiveExecution:
             "start": "start again" if self.running else "start",
             "sliders": [
                 {
-                    "name": f"{names[i]} {AXES[j]}",
+                    "name": f"{names[i]} {area.axes[j]}",
                     "low": float(area.lower[i, j]),
                     "high": float(area.upper[i, j]),
                     "value": float(self.wanted[i, j]),
-                    "unit": "rad" if AXES[j] == "yaw" else "m",
+                    "unit": "rad" if area.axes[j] in ANGLES else "m",
                 }
                 for i, j in self.sliders
             ],
