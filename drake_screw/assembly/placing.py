@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from drake_screw.errors import ScenarioError, listed, suggestion
-from drake_screw.tasks import ObjectArea, WorkArea
+from drake_screw.tasks import FARTHEST, ObjectArea, WorkArea
 from drake_screw.typing import Array
 
 PlaceLike = Mapping[str, float] | ArrayLike
@@ -31,7 +31,7 @@ def placed(area: WorkArea, instance: InstanceLike) -> Array:
         instance: coordinates of objects by their names, or of all in their order.
 
     Raises:
-        ScenarioError: no such object or axis, the wrong number of numbers, one that is not finite,
+        ScenarioError: no such object or axis, the wrong number of numbers, one beyond `FARTHEST`,
             or something that varies is left out.
 
     >>> bowl = ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=0.0)
@@ -91,9 +91,11 @@ def _place(area: WorkArea, i: int, place: PlaceLike) -> Array:
                 raise ScenarioError(f"no {axis} is given for {name}, and it varies", remedy=form)
             continue
         (value,) = _numbers(given[axis], name, form)[:1]
-        if not np.isfinite(value):
+        if not abs(value) <= FARTHEST:
             raise ScenarioError(
-                f"{axis} of {name} is {value:g}, expected a finite number", remedy=form
+                f"{axis} of {name} is {value:g}, expected a number from -{FARTHEST:g} to "
+                f"{FARTHEST:g}",
+                remedy=form,
             )
         coordinates[j] = value
     return coordinates

@@ -12,7 +12,7 @@ import numpy as np
 from drake_screw.errors import ScenarioError, suggestion
 from drake_screw.files import csv_text
 from drake_screw.planning import Outcomes
-from drake_screw.tasks import PLANAR, WorkArea
+from drake_screw.tasks import FARTHEST, PLANAR, WorkArea
 from drake_screw.typing import Array
 
 
@@ -61,10 +61,13 @@ def read_instances(file: Path, area: WorkArea) -> Array:
                 value = float(row[column])
             except (ValueError, IndexError):
                 value = float("nan")
-            if not np.isfinite(value):
+            if not abs(value) <= FARTHEST:
                 found = row[column] if column < len(row) else "nothing"
                 raise ScenarioError(
-                    f"{header[column]} is {found!r}, expected a number", file=file, line=number
+                    f"{header[column]} is {found!r}, expected a number from -{FARTHEST:g} to "
+                    f"{FARTHEST:g}",
+                    file=file,
+                    line=number,
                 )
             coordinates[number - 2, i, j] = value
         kept.append(number - 2)

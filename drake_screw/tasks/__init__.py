@@ -5,11 +5,12 @@ from drake_screw.tasks.object_area import ObjectArea
 from drake_screw.tasks.regions import GridRegions, Regions, grid_regions
 from drake_screw.tasks.sampling import anywhere, chance, draw, draw_in_all, uniform
 from drake_screw.tasks.symmetry import Symmetry
-from drake_screw.tasks.work_area import ANGLES, AXES, PLANAR, Overlap, WorkArea
+from drake_screw.tasks.work_area import ANGLES, AXES, FARTHEST, PLANAR, Overlap, WorkArea
 
 __all__ = [
     "ANGLES",
     "AXES",
+    "FARTHEST",
     "PLANAR",
     "BoxRegions",
     "GridRegions",

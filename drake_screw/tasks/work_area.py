@@ -29,6 +29,10 @@ Overlap = Callable[[Array], NDArray[np.bool_]]
 """X_WO (N, k, 4, 4) to (N,): whether two of the objects are in one another."""
 
 
+FARTHEST = 1000.0
+"""m or rad: no coordinate of an instance is greater, whatever its sign."""
+
+
 @dataclass(frozen=True)
 class WorkArea:
     """The box of object poses that a task must work in, one `ObjectArea` for each object.
@@ -216,7 +220,7 @@ class WorkArea:
             (N, k, c).
 
         Raises:
-            ValueError: another shape, a number that is not finite, or nothing is given of an axis
+            ValueError: another shape, a number beyond `FARTHEST`, or nothing is given of an axis
                 that varies.
 
         >>> area = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=-0.1),))
@@ -229,8 +233,8 @@ class WorkArea:
             given = given[:, None]
         if given.ndim != 3 or given.shape[1] != k or given.shape[2] not in (2, PLANAR, c):
             raise ValueError(f"instances have shape {np.shape(instances)}, expected (N, {k}, {c})")
-        if not np.isfinite(given).all():
-            raise ValueError("instances must be finite numbers")
+        if not (np.abs(given) <= FARTHEST).all():
+            raise ValueError(f"instances must be numbers from -{FARTHEST:g} to {FARTHEST:g}")
         for i, j in np.argwhere(self.free):
             if j >= given.shape[2]:
                 name = self.objects[i].name

@@ -91,7 +91,7 @@ def test_what_is_fixed_may_be_left_out(
         (
             TWO,
             {"bowl": (0.8, float("inf")), "cup": (0.5, 0.3, 0.0)},
-            "y of 'bowl' is inf, expected a finite number",
+            "y of 'bowl' is inf, expected a number from -1000 to 1000",
             FORM,
         ),
         (ONE, {"bowl": ("a", 0.1)}, "'bowl' is ('a', 0.1), expected numbers", "Give bowl=X,Y,"),

@@ -40,7 +40,7 @@ def test_what_is_found_is_what_is_written(small: Design, tmp_path: Path) -> None
     assert dict(scenario.robot.parked) == small.rest
     bowl = scenario.objects[0]
     assert (bowl.x.lower, bowl.x.upper) == pytest.approx(small.found.area.x)
-    assert bowl.z == small.table.top == 0.0
+    assert bowl.z.lower == bowl.z.upper == small.table.top == 0.0
     assert small.rest["finger_joint_1"] > 0.02
 
 

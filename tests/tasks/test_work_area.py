@@ -64,3 +64,10 @@ def test_leading_axes_are_carried(shape: tuple[int, ...]) -> None:
     assert X_WO.shape == (*shape, 2, 4, 4)
     assert area.coordinates(X_WO).shape == (*shape, 2, 3)
     assert area.contains(coordinates).shape == shape
+
+
+@pytest.mark.parametrize("x", [np.nan, -np.inf, 1e308, 1000.1])
+def test_numbers_that_are_no_place_are_refused(x: float) -> None:
+    area = WorkArea((ObjectArea("bowl", (0.7, -0.2, 0.0), (1.1, 0.8, 0.0), z=-0.1),))
+    with pytest.raises(ValueError, match="numbers from -1000 to 1000"):
+        area.complete([[x, 0.3]])
