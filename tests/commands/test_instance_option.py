@@ -68,7 +68,11 @@ def test_two_objects_are_executed(command: Command, two: Path) -> None:
         ([BOWL, CUP, "cub=1,2"], "no object 'cub' in this scenario", "Did you mean 'cup'?"),
         (["bowl.x=0.9", "bowl.y=0.3"], "no object 'bowl.x'", "Did you mean 'bowl'?"),
         (["bowl=0.9", CUP], "'bowl' is given 1 number, expected x, y and perhaps yaw", "Give bowl"),
-        (["bowl=0.9,nan", CUP], "y of 'bowl' is nan, expected a number from -1000 to 1000", "X and Y in m"),
+        (
+            ["bowl=0.9,nan", CUP],
+            "y of 'bowl' is nan, expected a number from -1000 to 1000",
+            "X and Y in m",
+        ),
         (["0.9", "0.3"], "an instance of 2 numbers, and there are 2 objects", "Give bowl=X,Y cup"),
     ],
 )

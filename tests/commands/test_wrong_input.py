@@ -139,7 +139,11 @@ def test_wrong_input_ends_with_2_and_one_message(
         ("inspect", ["--html", "x.csv"], "would be overwritten"),
         ("inspect", ["--port", "99999"], "cannot serve"),
         ("execute", ["--instance", "a", "b"], "'a' is not a number"),
-        ("execute", ["--instance", "nan", "0.3"], "x of 'bowl' is nan, expected a number from -1000 to 1000"),
+        (
+            "execute",
+            ["--instance", "nan", "0.3"],
+            "x of 'bowl' is nan, expected a number from -1000 to 1000",
+        ),
         ("execute", ["--instance", "bowll=0.9,0.3"], "Did you mean 'bowl'? Objects: bowl"),
         (
             "export",
