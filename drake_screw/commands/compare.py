@@ -16,9 +16,7 @@ EXAMPLE = "drake-screw compare runs/pouring/monday runs/pouring/tuesday --html b
 def compare(
     runs: Annotated[
         list[Path],
-        typer.Argument(
-            metavar="RUN RUN...", help="Directories of two runs or more.", show_default=False
-        ),
+        typer.Argument(metavar="RUN", help="Directories of two runs or more.", show_default=False),
     ],
     html: Annotated[
         Path | None,

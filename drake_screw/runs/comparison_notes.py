@@ -23,10 +23,12 @@ _SUCCESS = (
     "tool_touches",
     "approach",
     "led_around",
+    "freedoms",
+    "free_roll",
 )
 """Entries of certificates that say what succeeding is."""
-_CLAIM = ("beta", "epsilon", "delta", "confidence_holds_for", "delta_spent_over_attempts")
-"""Entries that say what was to be shown, and how surely."""
+_CLAIM = ("beta", "epsilon", "delta", "strategy", "guarantee", "confidence_holds_for")
+"""Entries that say what was to be shown, how surely, and by which promise."""
 
 
 def notes(

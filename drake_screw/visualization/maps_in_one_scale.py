@@ -24,8 +24,9 @@ from drake_screw.visualization.round_figure import beyond_the_plane
 from drake_screw.visualization.rounds import Round
 
 DOTS = 600
-WIDTH, LEFT, RIGHT, BOTTOM, TOP = 6.4, 0.75, 0.95, 1.45, 0.45  # inches
-MOST_HEIGHT = 6.4  # inches
+WIDTH, LEFT, RIGHT, BOTTOM, TOP = 5.6, 0.7, 0.85, 1.4, 0.45  # inches
+LEGEND = 0.5  # inches from the map down to it
+MOST_HEIGHT = 5.6  # inches
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ def _figure(one: MapOf, drawn: Cells, frame: tuple[Array, Array], title: str) ->
         ax, one.event, one.regions, dots=DOTS, things=one.things, axes=drawn.axes, frame=frame
     )
     words = beyond_the_plane(drawn, one.regions)
-    ax.set_title(title, fontsize=11, fontweight="bold", loc="left", color=INK, pad=12.0)
+    ax.set_title(title, fontsize=11, fontweight="bold", loc="left", color=INK, pad=14.0)
     if words:
         place = {"xytext": (0, 2), "textcoords": "offset points", "va": "bottom"}
         ax.annotate(words, (0, 1), xycoords="axes fraction", fontsize=8, color=INK, **place)
@@ -94,7 +95,8 @@ def _figure(one: MapOf, drawn: Cells, frame: tuple[Array, Array], title: str) ->
         title=shown.statement,
         title_fontsize=8,
         fontsize=8,
-        loc="lower center",
+        loc="upper center",
+        bbox_to_anchor=(0.5, (BOTTOM - LEGEND) / total),
         ncols=3,
         frameon=False,
         columnspacing=1.2,
