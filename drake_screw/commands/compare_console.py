@@ -9,7 +9,7 @@ from rich.text import Text
 
 from drake_screw.commands.console import certificate_panel
 from drake_screw.commands.output import Output
-from drake_screw.runs.common_regions import RegionRow, RegionTable
+from drake_screw.runs.common_regions import RegionTable
 from drake_screw.runs.comparison import ComparedRun, Comparison, without_sentences
 from drake_screw.scenario.differences import Difference
 
@@ -113,7 +113,7 @@ def _demonstrations(runs: Sequence[ComparedRun]) -> Table:
 def _title(table: RegionTable) -> str:
     title = f"regions of runs {', '.join(map(str, table.runs))}: share that fails, and at most"
     if len(table.regions) > _ROWS:
-        title += f"; the {_ROWS} that fail most in any, of {len(table.regions):,}"
+        title += f"; {_ROWS} of {len(table.regions):,}, those that differ or fail most"
     return title
 
 
@@ -123,10 +123,7 @@ def _regions(table: RegionTable) -> Table:
         for name in (f"run {number}", "rate", "at most"):
             shown.add_column(name, justify="right", no_wrap=True)
     shown.add_column("")
-    rows = table.regions
-    if len(rows) > _ROWS:
-        rows = tuple(sorted(rows, key=_worst, reverse=True)[:_ROWS])
-    for row in rows:
+    for row in table.telling(_ROWS):
         cells = []
         for k in range(len(table.runs)):
             rate = row.failure_rate[k]
@@ -140,10 +137,6 @@ def _regions(table: RegionTable) -> Table:
             str(row.region), row.name, *cells, differs, style="bold" if row.apart else None
         )
     return shown
-
-
-def _worst(row: RegionRow) -> float:
-    return max((rate for rate in row.failure_rate if rate is not None), default=-1.0)
 
 
 def _outcomes(runs: Sequence[ComparedRun]) -> Table:

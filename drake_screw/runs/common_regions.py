@@ -47,6 +47,17 @@ class RegionTable:
     runs: tuple[int, ...]
     regions: tuple[RegionRow, ...]
 
+    def telling(self, most: int) -> tuple[RegionRow, ...]:
+        """All rows; where there are more than `most`, first those that differ, then the worst."""
+        if len(self.regions) <= most:
+            return self.regions
+        return tuple(sorted(self.regions, key=_telling, reverse=True)[:most])
+
+
+def _telling(row: RegionRow) -> tuple[bool, float]:
+    rates = (rate for rate in row.failure_rate if rate is not None)
+    return row.apart, max(rates, default=-1.0)
+
 
 def same_area(one: WorkArea, other: WorkArea, *, same_objects: bool) -> bool:
     """Whether instances of two work areas are drawn from the same distribution.

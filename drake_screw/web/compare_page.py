@@ -17,6 +17,9 @@ from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.outlines import outlines
 from drake_screw.visualization.palette import INK, OUTCOME_COLORS, failure_color, ink_on
 
+ROWS = 100
+"""Regions listed of each table; all are in the result as JSON."""
+
 
 def write_compare_page(runs: Sequence[Run], comparison: Comparison, file: Path) -> Path:
     """Write a page.
@@ -59,6 +62,7 @@ def compare_page(runs: Sequence[Run], comparison: Comparison) -> str:
         causes=list(dict.fromkeys(cause for run in comparison.runs for cause in run.outcomes)),
         maps=list(zip(titles, map(figure_address, maps_in_one_scale(maps, titles)), strict=True)),
         one_scale=planes_shared(maps),
+        most=ROWS,
         shade=_shade,
     )
     return str(page) + "\n"

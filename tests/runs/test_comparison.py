@@ -19,6 +19,7 @@ from drake_screw.runs.run import Run
 from drake_screw.runs.shared_instances import common_rows, shared_instances
 from drake_screw.tasks import ObjectArea, WorkArea
 from drake_screw.tasks.regions import grid_regions
+from drake_screw.web.compare_page import compare_page
 from tests.small_runs import finished_run
 
 __all__ = ["finished_run"]
@@ -86,6 +87,36 @@ def test_regions_hold_what_run_json_has(comparison: Comparison, runs: list[Run])
         assert row.apart == expected
     assert any(row.apart for row in table.regions)
     assert not all(row.apart for row in table.regions)
+
+
+def test_of_many_regions_those_are_shown_that_tell_most(comparison: Comparison) -> None:
+    (table,) = comparison.regions
+    assert table.telling(16) == table.regions
+    differ = [row.region for row in table.regions if row.apart]
+    shown = [row.region for row in table.telling(len(differ) + 1)]
+    assert sorted(shown[:-1]) == differ
+    rest = [row for row in table.regions if not row.apart]
+    assert max(table.regions[shown[-1]].failure_rate) == max(max(r.failure_rate) for r in rest)
+
+
+def test_a_run_without_a_round_measured_nothing(finished_run: Path, tmp_path: Path) -> None:
+    early = Path(shutil.copytree(finished_run, tmp_path / "early"))
+    record = json.loads((early / "run.json").read_text())
+    record |= {"rounds": [], "demonstrations": [], "reason": "no plan"}
+    stated = record["certificate"]
+    kept = ("beta", "epsilon", "delta", "collisions_checked", "strategy", "guarantee")
+    record["certificate"] = {name: stated[name] for name in kept} | {
+        "certified": False, "demonstrations": 0, "regions": 16, "reason": "no plan",
+    }  # fmt: skip
+    (early / "run.json").write_text(json.dumps(record))
+    runs = open_runs([early, finished_run])
+    found = compare_runs(runs)
+    assert (found.runs[0].success, found.runs[0].outcomes) == (None, {})
+    assert (found.regions, found.shared) == ((), ())
+    assert found.notes[0].startswith("Run 1 ended before a first round")
+    page = compare_page(runs, found)
+    assert page.count("<img") == 1
+    assert "run 2, round 2" in page
 
 
 def test_success_is_the_mean_of_equal_regions(comparison: Comparison, runs: list[Run]) -> None:
