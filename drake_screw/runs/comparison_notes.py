@@ -92,7 +92,8 @@ def _of_regions(
         yield (
             "Failure probabilities are called different where the bounds of two runs do not "
             "overlap, which is right if both hold; where they overlap nothing is shown. Bounds "
-            f"are of a run's last round and hold with confidence {' or '.join(held)}."
+            "are of a run's last round; those of any one round hold with confidence "
+            f"{' or '.join(held)}."
         )
 
 

@@ -85,9 +85,9 @@ def _figure(one: MapOf, drawn: Cells, frame: tuple[Array, Array], title: str) ->
         ax, one.event, one.regions, dots=DOTS, things=one.things, axes=drawn.axes, frame=frame
     )
     words = beyond_the_plane(drawn, one.regions)
-    ax.set_title(title, fontsize=11, fontweight="bold", loc="left", color=INK, pad=14.0)
+    ax.set_title(title, fontsize=11, fontweight="bold", loc="left", color=INK, pad=18.0)
     if words:
-        place = {"xytext": (0, 2), "textcoords": "offset points", "va": "bottom"}
+        place = {"xytext": (0, 5), "textcoords": "offset points", "va": "bottom"}
         ax.annotate(words, (0, 1), xycoords="axes fraction", fontsize=8, color=INK, **place)
     add_colour_bar(figure, ax.inset_axes((1.02, 0.0, 0.03, 1.0)))
     figure.legend(
