@@ -34,6 +34,7 @@ VERBS: dict[str, tuple[str, ...]] = {
     "check": ("check", "pouring"),
     "run": ("run", "pouring", "--quiet", "--output", "{fresh}"),
     "report": ("report", "run"),
+    "compare": ("compare", "run", "other", "--html", "both.html"),
     "inspect": ("inspect", "run", "--html", "inspected.html"),
     "export": ("export", "run", "--instance", "0.9", "0.3", "--output", "plan.csv"),
     "evaluate": (
@@ -99,7 +100,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "places.csv").write_text(PLACES)
-        measured(["run", "pouring", "--quiet", "--output", "run"], folder)
+        for seed, run in enumerate(("run", "other")):
+            chosen = ("--seed", str(seed), "--output", run)
+            measured(["run", "pouring", "--quiet", *chosen], folder)
         print(f"{'verb':<10} {'processor':>9} {'clock':>7}" + ("    before" if before else ""))
         for verb in options.verbs:
             found = verbs[verb] = least(verb, folder, options.repeats)

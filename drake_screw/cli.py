@@ -13,6 +13,7 @@ from rich.console import Console
 
 from drake_screw.commands import (
     check,
+    compare,
     evaluate,
     execute,
     export,
@@ -44,6 +45,7 @@ _VERBS: dict[str, tuple[Callable[..., None], str]] = {
     "look": (look.look, look.EXAMPLE),
     "run": (run.run, run.EXAMPLE),
     "report": (report.report, report.EXAMPLE),
+    "compare": (compare.compare, compare.EXAMPLE),
     "inspect": (inspect.inspect, inspect.EXAMPLE),
     "execute": (execute.execute, execute.EXAMPLE),
     "export": (export.export, export.EXAMPLE),

@@ -14,8 +14,7 @@ from drake_screw.commands.options import (
     VerboseOption,
     chosen_scenario,
 )
-from drake_screw.commands.output import Output, check_writable
-from drake_screw.errors import DrakeScrewError
+from drake_screw.commands.output import Output, check_page
 
 EXAMPLE = "drake-screw look recordings/demo_07 --html demo_07.html"
 
@@ -51,10 +50,7 @@ def look(
     comes to the objects, and the joints to their limits; or why it is not used.
     """
     output = Output(json)
-    if html is not None:
-        check_writable(html, "--html")
-        if json is not None and Path(json).resolve() == html.resolve():
-            raise DrakeScrewError("--html and --json name one file", remedy="Give two.", file=html)
+    check_page(html, json)
     from drake_screw.commands.look_console import chosen_for, show_looks
 
     name, why = chosen_for(recording, scenario)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rich.console import Console
-from rich.segment import Segments
 from rich.table import Table
 
 from drake_screw.assembly.looking import LooksSummary
@@ -52,7 +50,7 @@ def show_looks(summary: LooksSummary, why: str, output: Output) -> None:
     scenario = f"{summary.scenario} ({why}), segmentation {summary.segmentation}"
     if summary.library:
         output.say(f"scenario   {scenario}")
-        _print(output.console, library_table(summary.recordings))
+        output.print_table(library_table(summary.recordings))
         for look in summary.recordings:
             if look.refused is not None:
                 output.say(look.line)
@@ -68,7 +66,7 @@ def show_looks(summary: LooksSummary, why: str, output: Output) -> None:
         output.say(f"{'' if name == before else name:<{width}}  {text}")
         before = name
     if look.screws:
-        _print(output.console, screw_table(look))
+        output.print_table(screw_table(look))
 
 
 def library_table(looks: tuple[LookSummary, ...]) -> Table:
@@ -122,9 +120,3 @@ def screw_table(look: LookSummary) -> Table:
             ", ".join(f"{x:.2f}" for x in screw.axis),
         )
     return table
-
-
-def _print(console: Console, table: Table) -> None:
-    """A table at its full width, wherever it goes."""
-    wide = console.render(table, console.options.update(width=200))
-    console.print(Segments(wide), soft_wrap=True, end="")

@@ -5,14 +5,21 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.segment import Segments
 
 from drake_screw.errors import DrakeScrewError
 from drake_screw.files import writable, write_text, writing
 
+if TYPE_CHECKING:
+    from rich.table import Table
+
 STANDARD_OUTPUT = "-"
-JSON = "--json"
+JSON, HTML = "--json", "--html"
+WIDE = 200
+"""Characters of a line that a table may fill."""
 
 
 class Output:
@@ -38,6 +45,11 @@ class Output:
     def say(self, text: object) -> None:
         """Print words as they are, however long."""
         self.console.print(str(text), soft_wrap=True, markup=False, highlight=False)
+
+    def print_table(self, table: Table) -> None:
+        """Print a table at its full width, wherever it goes."""
+        wide = self.console.render(table, self.console.options.update(width=WIDE))
+        self.console.print(Segments(wide), soft_wrap=True, end="")
 
     def present(self, result: object) -> None:
         """Print a result's words, and write it as JSON, if that is wanted.
@@ -87,6 +99,23 @@ def check_writable(file: Path, option: str) -> None:
         raise _unwritable(file, option, f"there is no folder '{file.parent}'")
     if not os.access(file.parent, os.W_OK):
         raise _unwritable(file, option, "its folder is read-only")
+
+
+def check_page(html: Path | None, json: str | None) -> None:
+    """Refuse a page that cannot be written, before the work is done.
+
+    Args:
+        html: a file, if a page is wanted.
+        json: where the result is written as JSON, if it is.
+
+    Raises:
+        DrakeScrewError: there cannot be such a file, or the two are one.
+    """
+    if html is None:
+        return
+    check_writable(html, HTML)
+    if json is not None and Path(json).resolve() == html.resolve():
+        raise DrakeScrewError(f"{HTML} and {JSON} name one file", remedy="Give two.", file=html)
 
 
 def _remedy(option: str) -> str:

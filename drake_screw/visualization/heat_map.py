@@ -59,6 +59,7 @@ def draw_heat_map(
     things: Sequence[Outline] = (),
     axes: PlaneAxes | None = None,
     mean: bool = False,
+    frame: tuple[Array, Array] | None = None,
 ) -> Sample:
     """Draw one round into `ax`: estimates, instances, demonstrations, weakest region, suggestion.
 
@@ -75,13 +76,14 @@ def draw_heat_map(
         things: obstacles in the work area or near it; drawn where they lie in the same plane.
         axes: of the plane, `usual_axes` if None.
         mean: show the mean of the regions above one another, not the worst.
+        frame: corners (2,) in m or rad of what `ax` shows; `extent` if None.
 
     Returns:
         The instances that were drawn.
     """
     drawn = cells(regions, event.verdict.estimates, axes)
     shown = sample(event.evaluation, dots)
-    _frame(ax, drawn, things)
+    _frame(ax, drawn, extent(drawn, things) if frame is None else frame)
     _draw_cells(ax, drawn, event, mean)
     _draw_instances(ax, drawn, shown)
     if text:
@@ -132,8 +134,8 @@ def extent(drawn: Cells, things: Sequence[Outline] = ()) -> tuple[Array, Array]:
     return widened(drawn.lower.min(axis=0), drawn.upper.max(axis=0), things)
 
 
-def _frame(ax: Axes, drawn: Cells, things: Sequence[Outline]) -> None:
-    lower, upper = extent(drawn, things)
+def _frame(ax: Axes, drawn: Cells, frame: tuple[Array, Array]) -> None:
+    lower, upper = frame
     pad = np.where(upper > lower, 0.0, 0.05)
     ax.set_xlim(upper[1] + pad[1], lower[1] - pad[1])
     ax.set_ylim(lower[0] - pad[0], upper[0] + pad[0])

@@ -24,7 +24,7 @@ from drake_screw.visualization.heat_map import (
 )
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK, OUTCOME_COLORS, failure_map
-from drake_screw.visualization.rounds import Round, Sample
+from drake_screw.visualization.rounds import Round, Sample, mean_failure
 
 COLUMNS = 3
 DOTS = 400
@@ -61,7 +61,8 @@ def draw_progress(
     style = {"color": color, "marker": "o", "capsize": 3, "label": "weakest region"}
     ax.errorbar(numbers, estimates, bars, **style).lines[0].set_gid("weakest")
     means = [
-        _mean(event, None if regions is None else regions[i]) for i, event in enumerate(events)
+        mean_failure(event.verdict, None if regions is None else regions[i])
+        for i, event in enumerate(events)
     ]
     style = {"color": INK, "marker": ".", "linestyle": ":", "gid": "mean"}
     ax.plot(numbers, means, **style, label="all regions together")
@@ -83,15 +84,6 @@ def draw_progress(
     ax.set_ylabel("failure probability", fontsize=9, color=INK)
     ax.tick_params(labelsize=8)
     ax.spines[["top", "right"]].set_visible(False)
-
-
-def _mean(event: Round, regions: Regions | None) -> float:
-    """Estimate of the failure probability in all regions that have samples."""
-    known = event.verdict.samples > 0
-    if not known.any():
-        return np.nan
-    weights = None if regions is None else regions.shares[known]
-    return float(np.average(event.verdict.estimates[known], weights=weights))
 
 
 def run_figure(

@@ -130,11 +130,8 @@ def _several_maps(
     )
     shown: Sample | None = None
     for row, each in enumerate(drawn):
-        over = listed(each.others)
-        stacked = each.stack > 1
-        most = "" if each.stack * len(each.region) == regions.K else "up to "
-        worst = f"the worst of {most}{each.stack} regions over {over}"
-        left = worst if stacked else f"averaged over {over}"
+        stacked, over = each.stack > 1, listed(each.others)
+        left = beyond_the_plane(each, regions)
         panel = figure.add_subplot(grid[row, 0])
         shown = _panel(panel, event, regions, each, left, look)
         if stacked:
@@ -149,6 +146,16 @@ def _several_maps(
     add_colour_bar(figure, figure.add_subplot(grid[:, columns]))
     assert shown is not None
     return figure, shown
+
+
+def beyond_the_plane(drawn: Cells, regions: Regions) -> str:
+    """What a cell's colour stands for along the axes that are not drawn; "" if there are none."""
+    if not drawn.others:
+        return ""
+    if drawn.stack == 1:
+        return f"averaged over {listed(drawn.others)}"
+    most = "" if drawn.stack * len(drawn.region) == regions.K else "up to "
+    return f"the worst of {most}{drawn.stack} regions over {listed(drawn.others)}"
 
 
 def _panel(
@@ -172,10 +179,10 @@ def _height(drawn: Cells, things: Sequence[Outline], most: float) -> float:
 
 
 def _caption(event: Round, regions: Regions, drawn: Cells) -> str:
-    objects, others = regions.area.objects, listed(drawn.others)
+    objects = regions.area.objects
     parts = [details(event, regions)]
-    if others:
-        parts.append(f"averaged over {others}")
+    if drawn.others:
+        parts.append(beyond_the_plane(drawn, regions))
     if len(objects) > 1:
         seen = dict.fromkeys(objects[i].name for i, _ in drawn.axes)
         parts.append(f"places of {listed(list(seen))}")

@@ -110,3 +110,15 @@ def headline(event: Round) -> str:
 def details(event: Round, regions: Regions) -> str:
     """The weakest region of a round and the strategy's reason."""
     return f"weakest region: {regions.name(event.verdict.region)}; {event.verdict.reason}"
+
+
+def mean_failure(verdict: Verdict, regions: Regions | None) -> float:
+    """Estimate of the failure probability in all regions that have samples; NaN where none has.
+
+    Each counts by its share of the work area, or all alike if there are no `regions`.
+    """
+    known = verdict.samples > 0
+    if not known.any():
+        return np.nan
+    weights = None if regions is None else regions.shares[known]
+    return float(np.average(verdict.estimates[known], weights=weights))

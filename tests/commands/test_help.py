@@ -22,6 +22,7 @@ VERBS = [
     "look",
     "run",
     "report",
+    "compare",
     "inspect",
     "execute",
     "export",
