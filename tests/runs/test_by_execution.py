@@ -244,6 +244,26 @@ def test_where_objects_overlap_in_the_middle_they_are_set_down_elsewhere() -> No
     assert setup.executing is not None
 
 
+def test_a_round_bowl_is_not_off_by_the_turn_of_the_tray_it_stands_on() -> None:
+    tray = "{name: tray, x: [0.7, 1.0], y: [0.0, 0.5], z: -0.0645, radius: 0.15, height: 0.02}"
+    bowl = (
+        "{name: bowl, on: tray, x: [-0.1, 0.1], y: 0, z: 0.02, radius: 0.08, height: 0.06, "
+        "symmetry: {axis: z, turns: any}}"
+    )
+    two = [
+        f"objects=[{tray}, {bowl}]",
+        "regions.grid={tray.x: 2}",
+        "execution.noise.object_yaw=0.1",
+    ]
+    setup = Setup(load_scenario("scooping", [*CHANGES, *two]))
+    place = np.array([[0.8, 0.2, 0.0], [0.1, 0.0, 0.0]])
+    stand, measured = setup.area.X_WO([place, place + np.array([[0.0, 0.0, 0.2], [0.0, 0.0, 0.0]])])
+    tray_off, bowl_off = setup.executing.off_by(measured, stand)
+    assert rotation_angle(tray_off, np.eye(4)) == pytest.approx(0.2)
+    assert rotation_angle(bowl_off, np.eye(4)) == pytest.approx(0.0, abs=1e-9)
+    np.testing.assert_allclose((bowl_off @ measured[1])[:3, 3], stand[1, :3, 3], atol=1e-12)
+
+
 def test_an_instance_that_is_named_is_set_down_where_it_is() -> None:
     setup = Setup(load_scenario("scooping", ["objects.0.z=[-0.0645, 0.5]"]))
     config = station_config(setup, free_objects=True)
