@@ -31,7 +31,7 @@ def first_place(first: First, area: WorkArea, p_WS: ArrayLike) -> Array:
         case "random":
             return np.full(area.lower.shape, np.nan)
         case "middle":
-            return area.curved((area.flat(area.lower) + area.flat(area.upper)) / 2.0)
+            return area.middle
         case "farthest":
             return _farthest(area, np.reshape(np.asarray(p_WS, dtype=float), (-1, 3)))
         case _:

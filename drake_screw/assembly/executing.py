@@ -21,6 +21,7 @@ from drake_screw.execution.noise import Noise
 from drake_screw.execution.parallel import Bench, Job, Judged, judge
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.planning.outcomes import one_outcome
+from drake_screw.planning.roll import turned_along
 from drake_screw.processes import Crew
 from drake_screw.screws import inverse
 from drake_screw.tasks import Symmetry
@@ -124,7 +125,7 @@ class ExecutedTries:
         names = [o.name for o in setup.area.objects]
         for i in solved:
             best = best_plan(ways(setup.arms), demonstrations, X_WM[i], names, 1)
-            moved = (X_WO[i] @ inverse(X_WM[i]))[best.demonstration.objects]
+            moved = self.off_by(X_WM[i], X_WO[i])[best.demonstration.objects]
             jobs.append(Job(best.plan, X_WO[i], joint_offset[i], moved @ best.plan.guides))
             number = next(d for d, one in enumerate(demonstrations) if one is best.demonstration)
             chosen.append((number, int(best.plan.outcome.variant)))
@@ -132,6 +133,18 @@ class ExecutedTries:
         judged = self._judged(crew, round, jobs, places)
         outcomes = _after(outcomes, solved, chosen, judged)
         return outcomes, _executed(measured, joint_offset, solved, judged)
+
+    def off_by(self, X_WM: Array, X_WO: Array) -> Array:
+        """Motions in the world from where objects are measured to where they stand, (k, 4, 4).
+
+        A body of revolution is as well where it was measured to be turned: as what it stands on was
+        measured wrongly, say.
+        """
+        found = [
+            turned_along(M, X, s.axis if s is not None and s.turns is None else None) @ inverse(M)
+            for M, X, s in zip(X_WM, X_WO, self._symmetries, strict=True)
+        ]
+        return np.stack(found)
 
     @property
     def _symmetries(self) -> list[Symmetry | None]:

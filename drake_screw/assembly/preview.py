@@ -66,6 +66,7 @@ class Preview:
         regions: how many; None where they are adaptive.
         adaptive: how the work area is halved; None for a grid.
         beta, epsilon, delta: what is to be certified.
+        success: what counts as one, "plan" or "execution".
         strategy, guarantee: the bandit, and what it promises.
         teacher: "simulated", "recorded" or "interactive".
         motion: that a simulated teacher shows.
@@ -109,6 +110,7 @@ class Preview:
     beta: float
     epsilon: float
     delta: float
+    success: str
     strategy: str
     guarantee: str
     teacher: str
@@ -155,6 +157,9 @@ class Preview:
             f"every region succeeds at least {self.beta:g} of the time, accuracy "
             f"{self.epsilon:g}, confidence {1 - self.delta:g}",
         )
+        executed = self.success == "execution"
+        if executed:
+            yield "success", "each instance's best plan is executed in simulation, objects free"
         yield "strategy", f"{self.strategy}: {self.guarantee}"
         yield "teacher", f"{self.teacher}: {self._teacher()}"
         yield from (("", f"  {line}") for line in self.kept)
@@ -170,10 +175,11 @@ class Preview:
             yield "time", f"unknown without a first demonstration{why}"
             return
         yield "samples", str(self.samples)
+        also = "; planning alone, executing each takes seconds more" if executed else ""
         if self.samples.fixed and self.samples.round is not None:
-            yield "time", f"about {self.samples.round / rate:,.0f} s a round or more here"
+            yield "time", f"about {self.samples.round / rate:,.0f} s a round or more here{also}"
         else:
-            yield "time", f"{1e4 / rate:,.1f} s for 10,000 instances here"
+            yield "time", f"{1e4 / rate:,.1f} s for 10,000 instances here{also}"
 
     def _teacher(self) -> str:
         if self.teacher == "interactive":
@@ -191,6 +197,7 @@ def preview(scenario: Scenario) -> Preview:
     setup = Setup(scenario)
     goal, tree, block, first = setup.goal, setup.tree, scenario.teacher, setup.arms[0]
     asking, recordings = scenario.demonstrations, teacher_recordings(setup)
+    _ = setup.executing
     recorder = setup.recorder
     rate, no_demonstration = _plans_per_second(setup)
     other = None
@@ -219,6 +226,7 @@ def preview(scenario: Scenario) -> Preview:
         beta=goal.beta,
         epsilon=goal.epsilon,
         delta=goal.delta,
+        success=scenario.coverage.success,
         strategy=setup.bandit.name,
         guarantee=setup.bandit.guarantee,
         teacher=block.kind,

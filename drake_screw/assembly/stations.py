@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from drake_screw.errors import ModelError, ScenarioError
 from drake_screw.execution.allowed import Allowed
 from drake_screw.execution.motors import immovable
 from drake_screw.execution.parallel import StationConfig
 from drake_screw.robot import RobotConfig, Workcell
+from drake_screw.tasks import ObjectArea, WorkArea, anywhere
+from drake_screw.typing import Array
 
 if TYPE_CHECKING:
     from drake_screw.assembly.planning_setup import PlanningSetup
+
+DRAWN = 8
+"""Places at which objects are set down to see whether they stay anywhere."""
 
 
 def station_config(
@@ -58,22 +66,47 @@ def check_masses(workcell: Workcell) -> None:
         )
 
 
-def check_standing(setup: PlanningSetup, config: StationConfig) -> None:
-    """Raises ScenarioError if an object, set down in the middle of its area, does not stay there.
+def check_standing(
+    setup: PlanningSetup, config: StationConfig, coordinates: ArrayLike | None = None
+) -> None:
+    """Check that objects that are set down stay there.
 
     Args:
         setup: of the scenario.
         config: of its station, with free objects.
+        coordinates: (k, c) where; somewhere in the work area if None: in its middle, or else at one
+            of a few places drawn in it. Where the middle says nothing of the rest, since heights or
+            tilts vary or objects overlap there, they are just those that are drawn.
+
+    Raises:
+        ScenarioError: an object does not stay at any of these places.
     """
-    area = setup.area
-    X_WO = area.X_WO((area.lower + area.upper) / 2.0)
-    _, unrest = config.build().settled(setup.workcell.start, X_WO)
-    if not unrest:
-        return
+    area, station, first = setup.area, config.build(), ""
+    places = _somewhere(area) if coordinates is None else np.asarray(coordinates, dtype=float)[None]
+    for X_WO in area.X_WO(places):
+        _, unrest = station.settled(setup.workcell.start, X_WO)
+        if not unrest:
+            return
+        first = first or unrest
     on = "there is no table" if setup.table is None else f"the table's top is at {setup.table.top}"
-    heights = ", ".join(f"{o.name} {o.z:g}" for o in area.objects)
     raise ScenarioError(
-        f"an object that is free to move has to stand on something, and {unrest}",
-        remedy=f"Heights (objects: z) are: {heights}; {on}.",
+        f"an object that is free to move has to stand on something, and {first}",
+        remedy=f"Heights (objects: z) are: {', '.join(map(_height, area.objects))}; {on}.",
         file=setup.scenario.source,
     )
+
+
+def _somewhere(area: WorkArea) -> Array:
+    """Places (N, k, c) in a work area, of which objects rest at one if they do as a rule."""
+    drawn = anywhere(area, np.random.default_rng(0), DRAWN)
+    middle = area.middle
+    if any(item.beyond_planar for item in area.objects) or area.overlaps(middle):
+        return drawn
+    return np.concatenate([middle[None], drawn])
+
+
+def _height(item: ObjectArea) -> str:
+    height = f"{item.z:g}" if not isinstance(item.z, tuple) else f"{item.z[0]:g} to {item.z[1]:g}"
+    on = "" if item.on is None else f" on {item.on}"
+    turned = "" if item.upright else ", tilted"
+    return f"{item.name} {height}{on}{turned}"

@@ -29,7 +29,12 @@ def evaluate(
         Path, typer.Option(metavar="DIR", help="A folder of recordings.", show_default=False)
     ],
     instances: Annotated[
-        Path, typer.Option(metavar="CSV", help="Columns x, y, yaw, as far as they vary; m and rad.")
+        Path,
+        typer.Option(
+            metavar="CSV",
+            help="Columns x, y, yaw, z, roll, pitch, as far as they vary; of several objects "
+            "cup.x, cup.y, ...; m and rad.",
+        ),
     ],
     output: Annotated[Path, typer.Option(metavar="CSV", help="Where to write the outcomes.")],
     model: ModelOption = None,

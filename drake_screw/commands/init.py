@@ -243,7 +243,7 @@ def _show(file: Path, out: Output) -> None:
     setup = Setup(load_scenario(file))
     meshcat = page_meshcat("localhost")
     scene = make_scene(setup, meshcat)
-    scene.show_suggestion((setup.area.lower + setup.area.upper) / 2.0)
+    scene.show_suggestion(setup.area.middle)
     meshcat.Flush()
     out.say(f"the workcell is at {meshcat.web_url()}")
     if out.console.is_terminal:

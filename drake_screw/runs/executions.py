@@ -96,18 +96,19 @@ def execute(
     setup, demonstrations = opened.setup, opened.demonstrations
     for one in setup.arms:
         check_masses(one.workcell)
+    place = None if instance is None else placed(setup.area, instance)
     if free_objects:
-        check_standing(setup, station_config(setup, free_objects=True))
+        check_standing(setup, station_config(setup, free_objects=True), place)
     planner = setup.planner_of_all(careful=True)
 
     def plan(coordinates: Array) -> Outcomes:
         X_WO = setup.area.X_WO(coordinates)
         return planner.any_success(demonstrations, X_WO, setup.start)
 
-    if instance is None:
+    if place is None:
         coordinates, outcomes = _fresh_instances(setup, plan, per_region)
     else:
-        coordinates = placed(setup.area, instance)[None]
+        coordinates = place[None]
         outcomes = plan(coordinates)
     X_WO = setup.area.X_WO(coordinates)
     solved = np.flatnonzero(outcomes.any_success).tolist()

@@ -25,6 +25,8 @@ SCENE = "meshcat.html"
 def plane_of(setup: Setup, names: Sequence[str]) -> Axes:
     """The axes of heat maps by their names, ``x`` or ``cup.x``: upwards, and sideways.
 
+    As in a grid of regions, a single object may be named or not.
+
     Raises:
         ScenarioError: they are not two, or not of the work area.
     """
@@ -35,6 +37,8 @@ def plane_of(setup: Setup, names: Sequence[str]) -> Axes:
         for i, item in enumerate(area.objects)
         for j, axis in enumerate(area.axes)
     }
+    if not several:
+        names = [name.removeprefix(f"{area.objects[0].name}.") for name in names]
     for name in names:
         if name not in known:
             raise ScenarioError(

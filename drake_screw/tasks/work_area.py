@@ -65,6 +65,11 @@ class WorkArea:
         return self._ends[1][:, : len(self.axes)].copy()
 
     @property
+    def middle(self) -> Array:
+        """(k, c) in the middle of the box; where objects must not overlap, they still may there."""
+        return self.curved((self.flat(self.lower) + self.flat(self.upper)) / 2.0)
+
+    @property
     def free(self) -> NDArray[np.bool_]:
         """(k, c) which coordinates may vary; a unit box over the area has an axis for each."""
         return self.upper > self.lower
@@ -205,8 +210,7 @@ class WorkArea:
         parent = dict(self._standing).get(i)
         if parent is None:
             return pose(np.eye(3), np.zeros(3))
-        middle = self.curved((self.flat(self.lower) + self.flat(self.upper)) / 2.0)
-        X: Array = self.X_WO(middle)[parent]
+        X: Array = self.X_WO(self.middle)[parent]
         return X
 
     def complete(self, instances: ArrayLike) -> Array:

@@ -172,8 +172,7 @@ def execute_live(
     check_address(host, port)
     opened = open_run(run)
     area, demonstrations = opened.setup.area, opened.demonstrations
-    middle = (area.lower + area.upper) / 2.0
-    coordinates = middle if instance is None else placed(area, instance)
+    coordinates = area.middle if instance is None else placed(area, instance)
     meshcat = page_meshcat(host)
     live = LiveExecution(opened.setup, demonstrations, np.asarray(coordinates), meshcat)
     _look(meshcat, area.X_WO(coordinates))

@@ -38,3 +38,14 @@ def test_an_end_effector_that_points_aside_is_noted(command) -> None:
     code, out, _ = command("check", "pouring_iiwa", "--set", turned)
     assert code == 0
     assert "'hand_turned' is 90 degrees from what looks like out of the hand" in out
+
+
+def test_check_tells_of_executions_and_refuses_what_a_run_would(command) -> None:
+    execution = ("--set", "coverage.success=execution")
+    code, out, _ = command("check", "pouring", *execution)
+    assert code == 0
+    assert "success    each instance's best plan is executed in simulation" in out
+    assert "planning alone, executing each takes seconds more" in " ".join(out.split())
+    code, out, error = command("check", "pouring", *execution, "--set", "objects.0.z=0.1")
+    assert code == 2
+    assert "has to stand on something" in " ".join((out + error).split())

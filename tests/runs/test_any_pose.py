@@ -100,10 +100,12 @@ def test_a_suggestion_survives_its_record(shelf: Run) -> None:
 
 def test_axes_of_pictures_are_named(shelf: Run) -> None:
     assert plane_of(shelf.setup, ["z", "y"]) == ((0, 3), (0, 1))
+    assert plane_of(shelf.setup, ["bowl.z", "y"]) == ((0, 3), (0, 1))
     for names, message in (
         (["z"], "expected two axes of a heat map, found z"),
         (["z", "z"], "expected two axes"),
-        (["z", "bowl.y"], "no axis 'bowl.y' in this work area"),
+        (["z", "bowl.z"], "expected two axes"),
+        (["z", "cup.y"], "no axis 'cup.y' in this work area"),
     ):
         with pytest.raises(ScenarioError, match=message):
             plane_of(shelf.setup, names)

@@ -11,6 +11,9 @@ import pytest
 from drake_screw import processes
 from drake_screw.acquisition import InstancesExecuted, RoundFinished, Suggestion
 from drake_screw.assembly import executing
+from drake_screw.assembly.placing import placed
+from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.stations import check_standing, station_config
 from drake_screw.demonstrations import write_recording
 from drake_screw.errors import ScenarioError
 from drake_screw.execution.parallel import Bench, Judged
@@ -214,13 +217,59 @@ def test_scenarios_that_cannot_be_executed_are_refused(changes, said) -> None:
     assert said in str(error.value)
 
 
-@pytest.mark.parametrize("change", ["table=null", "objects.0.z=0.1"])
-def test_a_bowl_that_stands_on_nothing_is_refused(tmp_path, change: str) -> None:
+@pytest.mark.parametrize(
+    ("change", "height"),
+    [
+        ("table=null", "bowl -0.0644719; there is no table"),
+        ("objects.0.z=0.1", "bowl 0.1; the table's top is at -0.0645"),
+        ("objects.0.z=[-0.06, 0.05]", "bowl -0.06 to 0.05; the table's"),
+        ("objects.0.roll=[-0.3, 0.3]", "bowl -0.0644719, tilted; the table's"),
+    ],
+)
+def test_a_bowl_that_stands_on_nothing_is_refused(tmp_path, change: str, height: str) -> None:
     wanted = load_scenario("scooping", [*CHANGES, change])
     with pytest.raises(ScenarioError, match="has to stand on something") as error:
         new_run(wanted, tmp_path / "run")
     assert "the bowl does not rest where it stands" in str(error.value)
+    assert height in error.value.remedy
     assert not (tmp_path / "run").exists()
+
+
+def test_where_objects_overlap_in_the_middle_they_are_set_down_elsewhere() -> None:
+    jar = "{name: jar, x: [0.7, 1.0], y: [0.0, 0.5], z: -0.0645, radius: 0.05, height: 0.08}"
+    bowl = "{name: bowl, x: [0.7, 1.0], y: [0.0, 0.5], z: -0.0645, radius: 0.08, height: 0.06}"
+    two = [f"objects=[{bowl}, {jar}]", "apart=true", "regions.grid={bowl.x: 2}"]
+    setup = Setup(load_scenario("scooping", [*CHANGES, *two]))
+    assert setup.area.overlaps(setup.area.middle)
+    assert setup.executing is not None
+
+
+def test_a_round_bowl_is_not_off_by_the_turn_of_the_tray_it_stands_on() -> None:
+    tray = "{name: tray, x: [0.7, 1.0], y: [0.0, 0.5], z: -0.0645, radius: 0.15, height: 0.02}"
+    bowl = (
+        "{name: bowl, on: tray, x: [-0.1, 0.1], y: 0, z: 0.02, radius: 0.08, height: 0.06, "
+        "symmetry: {axis: z, turns: any}}"
+    )
+    two = [
+        f"objects=[{tray}, {bowl}]",
+        "regions.grid={tray.x: 2}",
+        "execution.noise.object_yaw=0.1",
+    ]
+    setup = Setup(load_scenario("scooping", [*CHANGES, *two]))
+    place = np.array([[0.8, 0.2, 0.0], [0.1, 0.0, 0.0]])
+    stand, measured = setup.area.X_WO([place, place + np.array([[0.0, 0.0, 0.2], [0.0, 0.0, 0.0]])])
+    tray_off, bowl_off = setup.executing.off_by(measured, stand)
+    assert rotation_angle(tray_off, np.eye(4)) == pytest.approx(0.2)
+    assert rotation_angle(bowl_off, np.eye(4)) == pytest.approx(0.0, abs=1e-9)
+    np.testing.assert_allclose((bowl_off @ measured[1])[:3, 3], stand[1, :3, 3], atol=1e-12)
+
+
+def test_an_instance_that_is_named_is_set_down_where_it_is() -> None:
+    setup = Setup(load_scenario("scooping", ["objects.0.z=[-0.0645, 0.5]"]))
+    config = station_config(setup, free_objects=True)
+    check_standing(setup, config, placed(setup.area, {"bowl": {"x": 0.9, "y": 0.2, "z": -0.0645}}))
+    with pytest.raises(ScenarioError, match=r"falls by 64\.5 mm"):
+        check_standing(setup, config, placed(setup.area, {"bowl": {"x": 0.9, "y": 0.2, "z": 0.0}}))
 
 
 def test_a_planner_of_ones_own_is_refused(tmp_path) -> None:
