@@ -45,6 +45,7 @@ class OutcomeTable:
             instance the first that can; {} otherwise.
         collisions: how the others collide; None where collisions are not looked at.
         seconds: that planning took.
+        planned_only: whether the scenario has plans executed, which is not done here.
     """
 
     output: Path
@@ -56,6 +57,7 @@ class OutcomeTable:
     arms: dict[str, float]
     collisions: CollisionCounts | None
     seconds: float
+    planned_only: bool
 
     def __str__(self) -> str:
         count = (
@@ -63,6 +65,11 @@ class OutcomeTable:
             f"{counted(len(self.success_rates), 'demonstration')}"
         )
         lines = [f"{count} in {self.seconds:.1f} s"]
+        if self.planned_only:
+            lines.append(
+                "note: an instance is solved here if it has a plan; coverage.success: execution is "
+                "of runs"
+            )
         if self.outside:
             lines.append(
                 f"note: {counted(self.outside, 'instance')} "
@@ -125,6 +132,7 @@ def tabulate_outcomes(
             count_collisions(outcomes, setup.workcell) if scenario.planner.collision else None
         ),
         seconds=seconds,
+        planned_only=scenario.coverage.success == "execution",
     )
 
 

@@ -42,9 +42,11 @@ def test_what_the_scenario_fixes_needs_no_column(command, library, tmp_path) -> 
         ["0.8", "0.1"],
         ["0.9", "0.1"],
     ]
-    code, out, _ = command(*fixed, "--instances", "x_y.csv", "--output", "out.csv")
+    by_execution = ("--set", "coverage.success=execution")
+    code, out, _ = command(*fixed, *by_execution, "--instances", "x_y.csv", "--output", "out.csv")
     assert code == 0
     assert "note: the scenario fixes y, and 1 instance has another one" in out
+    assert "note: an instance is solved here if it has a plan" in out
     code, out, err = command(*pouring, "--instances", "x.csv", "--output", "other.csv")
     assert (code, out) == (2, "")
     assert "no column 'y', and it varies" in err
