@@ -20,10 +20,10 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from drake_screw.files import now
 from drake_screw.runs.directory import versions
 
 PLACES = "x,y\n" + "".join(f"{0.75 + 0.01 * i:.2f},{0.02 * i:.2f}\n" for i in range(20))
@@ -112,7 +112,7 @@ def main() -> None:
             print(line, flush=True)
     if options.history is not None:
         entry = {
-            "when": datetime.now().astimezone().isoformat(timespec="seconds"),
+            "when": now(),
             "processors": len(os.sched_getaffinity(0)),
             "versions": versions(),
             "verbs": verbs,

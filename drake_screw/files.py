@@ -237,6 +237,11 @@ def printable(name: str) -> str:
     return os.fsencode(name).decode("utf-8", "backslashreplace")
 
 
+def now() -> str:
+    """The local time with its offset, to the second."""
+    return datetime.now().astimezone().isoformat(timespec="seconds")
+
+
 def file_hash(file: Path) -> str:
     """SHA-256 of a file's contents."""
     return hashlib.sha256(file.read_bytes()).hexdigest()

@@ -10,11 +10,10 @@ import os
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from datetime import datetime
 from pathlib import Path
 
 from drake_screw.errors import RunDirectoryError
-from drake_screw.files import writing
+from drake_screw.files import now, writing
 
 LOCK = ".lock"
 
@@ -88,8 +87,7 @@ def _is_at(lock: int, file: Path) -> bool:
 
 
 def _this_process() -> dict[str, str | int]:
-    since = datetime.now().astimezone().isoformat(timespec="seconds")
-    return {"process": os.getpid(), "host": socket.gethostname(), "since": since}
+    return {"process": os.getpid(), "host": socket.gethostname(), "since": now()}
 
 
 def _holder(file: Path) -> str:

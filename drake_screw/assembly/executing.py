@@ -14,6 +14,7 @@ from drake_screw.acquisition import Executed, InstancesExecuted
 from drake_screw.acquisition.tries import Tried, Try
 from drake_screw.assembly.ranked_plans import best_plan
 from drake_screw.assembly.stations import check_masses, check_standing, station_config
+from drake_screw.assembly.symmetries import object_symmetries
 from drake_screw.assembly.ways import ways
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import ScenarioError
@@ -122,9 +123,9 @@ class ExecutedTries:
         outcomes = setup.careful_planner.any_success(demonstrations, X_WM, start)
         solved = np.flatnonzero(outcomes.any_success).tolist()
         jobs, chosen = [], []
-        names = [o.name for o in setup.area.objects]
+        names, arms = [o.name for o in setup.area.objects], ways(setup.arms)
         for i in solved:
-            best = best_plan(ways(setup.arms), demonstrations, X_WM[i], names, 1)
+            best = best_plan(arms, demonstrations, X_WM[i], names, 1)
             moved = self.off_by(X_WM[i], X_WO[i])[best.demonstration.objects]
             jobs.append(Job(best.plan, X_WO[i], joint_offset[i], moved @ best.plan.guides))
             number = next(d for d, one in enumerate(demonstrations) if one is best.demonstration)
@@ -148,8 +149,7 @@ class ExecutedTries:
 
     @property
     def _symmetries(self) -> list[Symmetry | None]:
-        objects = self.setup.scenario.objects
-        return [None if o.symmetry is None else o.symmetry.symmetry for o in objects]
+        return object_symmetries(self.setup.scenario)
 
     def _judged(
         self, crew: Crew[Bench], round: int, jobs: Sequence[Job], places: Sequence[Place]

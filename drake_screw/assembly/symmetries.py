@@ -18,9 +18,7 @@ def symmetries(scenario: Scenario, arm: Arm, tool: ToolBlock | None) -> Symmetri
     Raises:
         ModelError: the tool's frame is not one that the end effector carries.
     """
-    objects: list[Symmetry | None] = [
-        None if o.symmetry is None else o.symmetry.symmetry for o in scenario.objects
-    ]
+    objects = object_symmetries(scenario)
     tried, chain = scenario.planner.turns, arm.screw_chain()
     if tool is None:
         return Symmetries.of(chain, objects, tried=tried)
@@ -28,3 +26,8 @@ def symmetries(scenario: Scenario, arm: Arm, tool: ToolBlock | None) -> Symmetri
     X_ET = arm.held(tool.frame or arm.end_effector) @ pose(rotation, tool.xyz)
     held = None if tool.symmetry is None else tool.symmetry.symmetry
     return Symmetries.of(chain, objects, held, X_ET, tried)
+
+
+def object_symmetries(scenario: Scenario) -> list[Symmetry | None]:
+    """Of each object, None where it has none."""
+    return [None if o.symmetry is None else o.symmetry.symmetry for o in scenario.objects]

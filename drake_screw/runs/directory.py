@@ -6,7 +6,6 @@ import platform
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self, TextIO
@@ -15,7 +14,7 @@ from drake_screw.acquisition import RoundFinished
 from drake_screw.demonstrations import Fidelity, Recording, write_recording
 from drake_screw.demonstrations.library import is_recording
 from drake_screw.errors import RunDirectoryError
-from drake_screw.files import fresh_folder, make_folder, write_folder, write_text, writing
+from drake_screw.files import fresh_folder, make_folder, now, write_folder, write_text, writing
 from drake_screw.runs.codec import json_text, read_run_record, save_evaluation
 from drake_screw.runs.records import (
     DemonstrationRecord,
@@ -159,8 +158,3 @@ def versions() -> dict[str, str]:
     """Versions of all that a result may depend on."""
     packages = ("drake-screw", "drake", "numpy", "scipy", "numba")
     return {"python": platform.python_version(), **{name: version(name) for name in packages}}
-
-
-def now() -> str:
-    """The local time with its offset, to the second."""
-    return datetime.now().astimezone().isoformat(timespec="seconds")

@@ -24,6 +24,7 @@ from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import RunDirectoryError, ScenarioError
+from drake_screw.files import now
 from drake_screw.holding import holding
 from drake_screw.runs.begun_with import (
     check_models,
@@ -34,7 +35,7 @@ from drake_screw.runs.begun_with import (
 from drake_screw.runs.certificate import Certificate
 from drake_screw.runs.certifying import certificate
 from drake_screw.runs.codec import FORMAT
-from drake_screw.runs.directory import PICTURE, SCENARIO, RunDirectory, now, versions
+from drake_screw.runs.directory import PICTURE, SCENARIO, RunDirectory, versions
 from drake_screw.runs.html import certificate_html, run_html
 from drake_screw.runs.kept_executions import KeptExecutions
 from drake_screw.runs.mending import drop_damaged, find_damage
@@ -139,16 +140,15 @@ class Run:
         check_parts(self.setup, self.directory)
         check_ways_around(self.setup, self.directory.record.led_around, "run", self.directory.path)
 
-        def progress(event: RegionsEvaluated | InstancesExecuted) -> None:
+        def tell(event: Event | RegionsEvaluated | InstancesExecuted) -> None:
             for listener in listeners:
                 listener(event)
 
         self.directory.save(status=Status.RUNNING, reason=None)
         try:
-            for event in carry_on(self.reader, progress):
+            for event in carry_on(self.reader, tell):
                 self._record(event)
-                for listener in listeners:
-                    listener(event)
+                tell(event)
                 yield event
         except BaseException as error:
             if self.directory.record.status is Status.RUNNING:
@@ -273,9 +273,9 @@ def open_run(path: PathLike, **parts: Unpack[Parts]) -> Run:
     try:
         setup = Setup(load_stored_scenario(path / SCENARIO), **parts)
     except ScenarioError as error:
-        missing = not (path / SCENARIO).is_file()
+        why = error.message if (path / SCENARIO).is_file() else "the file is missing"
         raise RunDirectoryError(
-            f"damaged: {'the file is missing' if missing else error.message}",
+            f"damaged: {why}",
             remedy="Restore the scenario of this run, or run it again from the original.",
             file=path / SCENARIO,
             line=error.line,
@@ -290,11 +290,11 @@ def resumable(run: Run) -> Run:
     Raises:
         RunDirectoryError: it has ended, and all of it can be read.
     """
-    record = run.directory.record
+    record, path = run.directory.record, run.directory.path
     if record.ended and find_damage(run.reader) is None:
         raise RunDirectoryError(
             f"this run has ended ({record.status}); there is nothing to resume",
-            remedy=f"See it with: drake-screw report {run.directory.path}",
-            file=run.directory.path,
+            remedy=f"See it with: drake-screw report {path}",
+            file=path,
         )
     return run

@@ -24,13 +24,14 @@ from drake_screw.files import (
     file_hash,
     fresh_folder,
     make_folder,
+    now,
     write_text,
     writing,
 )
 from drake_screw.holding import holding
 from drake_screw.processes import WorkerLost, share_out
 from drake_screw.runs.begun_with import check_ways_around
-from drake_screw.runs.directory import SCENARIO, now, versions
+from drake_screw.runs.directory import SCENARIO, versions
 from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.studies.experiment import Experiment, StudyRun, check_runs, split
