@@ -8,6 +8,7 @@ import logging
 from rich.console import Console
 
 from drake_screw.commands.countdown import Countdown, Pace
+from drake_screw.steps import Step
 
 
 class Clock:
@@ -42,9 +43,9 @@ def test_what_was_done_before_does_not_count_as_fast_work() -> None:
 def test_without_a_terminal_there_is_a_line_now_and_then(caplog) -> None:
     caplog.set_level(logging.INFO, "drake_screw")
     clock = Clock()
-    with Countdown("executed", Console(file=io.StringIO()), clock) as countdown:
+    with Countdown(Console(file=io.StringIO()), clock, at_once=True) as countdown:
         for done in range(5):
-            countdown(done, 4)
+            countdown(Step("executed", done, 4))
             clock.now += 6.0
     assert [record.getMessage() for record in caplog.records] == [
         "executed 0 of 4",
