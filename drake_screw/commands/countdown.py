@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
@@ -86,6 +87,19 @@ class Countdown:
 
     def __exit__(self, *_: object) -> None:
         self._live.stop()
+
+    def detail(self, words: str, text: str) -> None:
+        """What is done, and how far it is in words of its own; not in the log."""
+        self._live.update(self._bar, description=words, total=None, detail=text)
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """A context in which it is not shown, since somebody is asked something."""
+        self._live.stop()
+        try:
+            yield
+        finally:
+            self._live.start()
 
     def __call__(self, step: Step) -> None:
         """A step has begun, or so much of it is done."""

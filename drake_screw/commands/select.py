@@ -46,10 +46,11 @@ def select(
     """
     out = Output(json)
     from drake_screw.commands.select_console import SelectConsole, show_selection
-    from drake_screw.runs.selecting import select as select_recordings
 
     loaded = chosen_scenario(scenario, set_, model, seed=seed)
     with SelectConsole(out.console) as shown:
+        from drake_screw.runs.selecting import select as select_recordings
+
         found = select_recordings(loaded, demonstrations, instances=instances, listener=shown)
     show_selection(found, loaded.demonstrations.budget, out)
     out.write(found)

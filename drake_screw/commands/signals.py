@@ -4,15 +4,35 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
 
 INTERRUPTED = 130
 """Exit code."""
 
 _ENDINGS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Verbs(TyperGroup):
+    """Verbs that say in a line that they were interrupted, where they have nothing better to say.
+
+    A question at which Ctrl-C or Ctrl-D is pressed is interrupted, too.
+    """
+
+    def invoke(self, ctx: Any) -> Any:
+        """Invokes the verb that the command line names."""
+        try:
+            return super().invoke(ctx)
+        except (KeyboardInterrupt, typer.Abort):
+            print("interrupted", file=sys.stderr)
+            raise typer.Exit(INTERRUPTED) from None
 
 
 @contextmanager

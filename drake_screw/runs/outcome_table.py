@@ -114,6 +114,7 @@ def tabulate_outcomes(
         DrakeScrewError: anything that cannot be read or written; nothing is written then.
     """
     output = Path(output)
+    tell(Step(f"learning from {demonstrations}"))
     setup = Setup(scenario)
     learned = [setup.learn(recording) for recording in setup.recordings(demonstrations)]
     with writing(output, WRITABLE_OUTPUT), outcome_file(output) as table:
@@ -124,8 +125,9 @@ def tabulate_outcomes(
         def planned(count: int) -> None:
             nonlocal done
             done += count
-            tell(Step("planned", done, len(found)))
+            tell(Step("planning instances", done, len(found)))
 
+        planned(0)
         for coordinates in found.blocks():
             outcomes = portions.plan(setup, learned, coordinates, planned)
             tally.add(coordinates, outcomes)

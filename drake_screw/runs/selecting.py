@@ -18,10 +18,11 @@ from drake_screw.errors import DrakeScrewError, RecordingError
 from drake_screw.runs.certifying import certificate
 from drake_screw.runs.codec import plain
 from drake_screw.runs.selection import Attempt, PassedOver, Selection, TableSummary
-from drake_screw.runs.selection_events import Listener, Step, Tried
+from drake_screw.runs.selection_events import Listener, Tried
 from drake_screw.runs.selection_margins import Margins, certified_rates, short_rates
 from drake_screw.runs.selection_table import ROUND, Asked, GrowingTable
 from drake_screw.scenario.schema import Scenario
+from drake_screw.steps import Step
 from drake_screw.tasks import Regions
 from drake_screw.typing import PathLike
 
