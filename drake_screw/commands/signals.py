@@ -31,8 +31,14 @@ class Verbs(TyperGroup):
         try:
             return super().invoke(ctx)
         except (KeyboardInterrupt, typer.Abort):
-            print("interrupted", file=sys.stderr)
-            raise typer.Exit(INTERRUPTED) from None
+            pass
+        except typer.Exit:
+            raise  # by a verb that had something to say
+        except Exception:
+            if not any(signal.getsignal(each) is _end for each in _ENDINGS):
+                raise  # else it is what native code made of the interruption: an ImportError, say
+        print("interrupted", file=sys.stderr)
+        raise typer.Exit(INTERRUPTED)
 
 
 @contextmanager
