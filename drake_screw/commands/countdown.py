@@ -90,7 +90,8 @@ class Countdown:
 
     def detail(self, words: str, text: str) -> None:
         """What is done, and how far it is in words of its own; not in the log."""
-        self._live.update(self._bar, description=words, total=None, detail=text)
+        self._begin(words)
+        self._live.update(self._bar, detail=text)
 
     @contextmanager
     def aside(self) -> Iterator[None]:
@@ -103,22 +104,19 @@ class Countdown:
 
     def __call__(self, step: Step) -> None:
         """A step has begun, or so much of it is done."""
-        if step.words != self._words:
-            self._words = step.words
-            self._pace.start()
+        self._begin(step.words)
         if step.total is None:
-            self._live.update(self._bar, description=step.words, total=None, detail="")
             return
         how_far = self._pace.of(step.done, step.total)
-        self._live.update(
-            self._bar,
-            description=step.words,
-            completed=step.done,
-            total=step.total,
-            detail=how_far,
-        )
+        self._live.update(self._bar, completed=step.done, total=step.total, detail=how_far)
         if not self._terminal and step.done < step.total and self._pace.due():
             _log.info("%s %s", step.words, how_far)
+
+    def _begin(self, words: str) -> None:
+        if words != self._words:
+            self._words = words
+            self._pace.start()
+            self._live.reset(self._bar, total=None, description=words, detail="")
 
 
 def shown_progress(console: Console, *, hidden: bool = False) -> Progress:
