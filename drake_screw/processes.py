@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process
+from multiprocessing import get_context, parent_process, resource_tracker
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from threading import Thread
@@ -99,6 +99,7 @@ class Crew(Generic[_Tool]):
                 yield place, work(self._tools[0], job)
             return
         if self._pool is None:
+            _begin_tracker()
             context = get_context("spawn")
             self._pool = ProcessPoolExecutor(self._workers, context, _begin, (self._build,))
         with _ctrl_c_held():
@@ -128,6 +129,22 @@ def _end_with(parent: BaseProcess | None) -> None:
     if parent is not None:
         wait([parent.sentinel])
         os._exit(1)
+
+
+def _begin_tracker() -> None:
+    """Starts the process that removes semaphores which are left behind, without a word of it.
+
+    They are left by a process that ends at once, as at the second Ctrl-C, and that is no fault.
+    """
+    before = os.environ.get("PYTHONWARNINGS")
+    quiet = "ignore:resource_tracker:UserWarning"
+    os.environ["PYTHONWARNINGS"] = quiet if before is None else f"{before},{quiet}"
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        del os.environ["PYTHONWARNINGS"]
+        if before is not None:
+            os.environ["PYTHONWARNINGS"] = before
 
 
 def _work(work: Callable[[Any, Any], Any], job: Any) -> Any:

@@ -91,14 +91,14 @@ def execute(
         done_live = execute_live(run, instance=place, host=host, port=port, announce=output.say)
         raise typer.Exit(0 if done_live else 1)
     count = 2 if per_region is None else per_region
-    with Countdown("executed", output.console) as countdown:
+    with Countdown(output.console, at_once=True) as countdown:
         done = executions.execute(
             run,
             per_region=count,
             instance=place,
             workers=workers,
             free_objects=free_objects,
-            progress=countdown,
+            tell=countdown,
         )
     output.present(done)
     raise typer.Exit(0 if done.summary.flawless else 1)
