@@ -13,8 +13,8 @@ from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
 from drake_screw.execution.timing import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Plan
-from drake_screw.processes import share_out
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.sharing import Workers, share_out
 from drake_screw.typing import Array
 
 KEPT = 8  # of that many samples of a log, one comes back from another process
@@ -86,7 +86,7 @@ def execute_all(
     config: StationConfig,
     jobs: Sequence[Job],
     *,
-    workers: int | None = None,
+    workers: Workers = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Execution, ...]:
     """Time and simulate plans.
@@ -94,14 +94,15 @@ def execute_all(
     Args:
         config: the station that each process builds once.
         jobs: what to do.
-        workers: number of processes; as many as processors if None, none but this one if 1.
+        workers: number of processes, as many as processors if None, none but this one if 1; or a
+            cluster.
         progress: called with how many are done and how many there are, at first with none.
 
     Returns:
         The execution of each job, in order, thinned out.
 
     Raises:
-        WorkerLost: a process was killed.
+        SharingError: processes were killed, or a cluster is lost.
     """
     tell = progress or (lambda done, total: None)
     tell(0, len(jobs))

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from drake_screw.processes import Crew, WorkerLost, share_out
+from drake_screw.sharing import Crew, WorkerLost, share_out
 
 
 def tool(start: int) -> list[int]:
@@ -93,8 +93,8 @@ def test_what_drake_warns_of_is_not_said_again_by_each_process(capfd) -> None:
 
 BUSY = """
 import sys, time
-from drake_screw.processes import share_out
-from tests.test_processes import say_and_wait, tool
+from drake_screw.sharing import share_out
+from tests.sharing.test_processes import say_and_wait, tool
 from functools import partial
 
 if __name__ == "__main__":
@@ -111,7 +111,7 @@ def test_processes_end_with_the_one_they_work_for(tmp_path) -> None:
     """However that one ends."""
     script = tmp_path / "busy.py"
     script.write_text(BUSY)
-    root = str(Path(__file__).parents[1])
+    root = str(Path(__file__).parents[2])
     main = subprocess.Popen(
         [sys.executable, str(script)],
         stdout=subprocess.PIPE,

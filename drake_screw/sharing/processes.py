@@ -1,0 +1,93 @@
+"""Processes of this machine that work is shared out on."""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
+from threading import Thread
+from typing import Any, TypeVar
+
+from drake_screw.sharing.executor import SharingError, WorkerLost
+
+_Result = TypeVar("_Result")
+
+
+def processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+class Processes:
+    """An `Executor` of processes that this one starts, and that end with it.
+
+    Where one of them is killed all are started anew.
+
+    Args:
+        count: of processes.
+    """
+
+    tries = 3
+
+    def __init__(self, count: int) -> None:
+        self.width = count
+        self._pool: ProcessPoolExecutor | None = None
+
+    def submit(self, call: Callable[..., _Result], *arguments: Any) -> Future[_Result]:
+        """See `Executor.submit`."""
+        with _ctrl_c_held():
+            if self._pool is not None:
+                try:
+                    return self._pool.submit(call, *arguments)
+                except BrokenProcessPool:
+                    self._pool.shutdown()
+            self._pool = ProcessPoolExecutor(self.width, get_context("spawn"), _begin)
+            return self._pool.submit(call, *arguments)
+
+    def watch(self) -> None:
+        """See `Executor.watch`; a pool tells by itself what it lost."""
+
+    def lost(self, error: Exception) -> SharingError | None:
+        """See `Executor.lost`."""
+        if not isinstance(error, BrokenProcessPool):
+            return None
+        return WorkerLost(
+            f"a process that shared the work was killed, {self.tries} times at the same job; "
+            "memory may have run out",
+            remedy="Give fewer --workers.",
+        )
+
+    def close(self) -> None:
+        """See `Executor.close`."""
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
+
+
+def _begin() -> None:
+    """Sets a process up; what Drake warns of has been told by the one that it works for."""
+    Thread(target=_end_with, args=(parent_process(),), daemon=True).start()
+    logging.getLogger("drake").addFilter(lambda record: record.levelno >= logging.ERROR)
+
+
+def _end_with(parent: BaseProcess | None) -> None:
+    """Ends this process when the one that it works for has ended, however it did."""
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+
+@contextmanager
+def _ctrl_c_held() -> Iterator[None]:
+    """Processes started meanwhile never see Ctrl-C: they end when this one does."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
