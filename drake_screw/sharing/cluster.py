@@ -7,11 +7,12 @@ depends on; both are looked at before it does its first job.
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import socket
 import time
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import CancelledError, Future
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import urlsplit
@@ -149,14 +150,11 @@ def cluster(address: str, patience: float = PATIENCE) -> Iterator[Cluster]:
     for logger in quiet:
         logger.setLevel(logging.CRITICAL)  # what goes wrong is said by what is raised here
     try:
+        _check_scheduler(address)
         try:
             client = Client(address, timeout=_ANSWER, set_as_default=False, name="drake-screw")
-        except Exception as error:
-            raise ClusterError(
-                f"what listens at {address} does not answer as a Dask scheduler does",
-                remedy="Give the address that `dask scheduler` printed at its start "
-                "(Scheduler at: ...), not that of its dashboard or of a worker.",
-            ) from error
+        except OSError as error:
+            raise _no_scheduler(address) from error
         try:
             joined = Cluster(client, address, patience)
             while joined.width == 0:
@@ -186,15 +184,43 @@ def _check_address(address: str) -> None:
         )
     try:
         socket.create_connection((host, port), timeout=_ANSWER).close()
-    except OSError as error:
-        if isinstance(error, socket.gaierror | UnicodeError):
-            why, remedy = f"no host '{host}' is known", "Look at how its name is written."
-        else:
+    except (OSError, UnicodeError) as error:
+        if isinstance(error, OSError) and not isinstance(error, socket.gaierror):
             why = f"nothing answers there ({error.strerror or error})"
             remedy = f"Start a scheduler on {host}: dask scheduler --port {port}"
+        else:
+            why, remedy = f"no host '{host}' is known", "Look at how its name is written."
         raise ClusterError(
             f"no scheduler can be reached at {address}: {why}", remedy=remedy
         ) from error
+
+
+def _check_scheduler(address: str) -> None:
+    """Raises ClusterError if what listens there is something else."""
+    from distributed import rpc
+
+    async def ask() -> str:
+        async with rpc(address) as there:
+            return str((await there.identity())["type"])
+
+    async def ask_in_time() -> str:
+        return await asyncio.wait_for(ask(), _ANSWER)
+
+    try:
+        with ThreadPoolExecutor(1) as apart:  # from an event loop that may run in this thread
+            found = apart.submit(asyncio.run, ask_in_time()).result()
+    except Exception as error:
+        raise _no_scheduler(address) from error
+    if found != "Scheduler":
+        raise _no_scheduler(address)
+
+
+def _no_scheduler(address: str) -> ClusterError:
+    return ClusterError(
+        f"what listens at {address} does not answer as a Dask scheduler does",
+        remedy="Give the address that `dask scheduler` printed at its start (Scheduler at: ...), "
+        "not that of its dashboard or of a worker.",
+    )
 
 
 def _check_workers(found: Mapping[str, Mapping[str, str] | Exception]) -> None:

@@ -7,7 +7,6 @@ those of a cluster, which makes no difference to any answer.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Any, Generic, Self, TypeVar
@@ -27,7 +26,7 @@ Workers = int | Executor | None
 _AHEAD = 2
 """Lots under way for each process: the one it is at, and the next one."""
 
-_log = logging.getLogger(__name__)
+_LOOK = 1.0  # s, until it is looked at who is there, where nothing is finished
 
 
 def share_out(
@@ -113,7 +112,7 @@ def _shared(
                 lot = lots.take(shares)
                 chosen = [jobs[place] for place in lot.places]
                 under_way[executor.submit(carry_out, need, work, chosen)] = lot
-            for future in wait(under_way, 1.0, FIRST_COMPLETED).done:
+            for future in wait(under_way, _LOOK, FIRST_COMPLETED).done:
                 lot = under_way.pop(future)
                 answered = _answered(executor, future, lot)
                 if answered is None:
@@ -141,6 +140,5 @@ def _answered(
         if lost is None:
             raise
     if lot.tries + 1 < executor.tries:
-        _log.warning("a process that shared the work was killed; its jobs are done once more")
         return None
     raise lost from error

@@ -18,6 +18,7 @@ from typing import Any, TypeVar
 from drake_screw.sharing.executor import SharingError, WorkerLost
 
 _Result = TypeVar("_Result")
+_log = logging.getLogger(__name__)
 
 
 def processors() -> int:
@@ -47,6 +48,7 @@ class Processes:
                 try:
                     return self._pool.submit(call, *arguments)
                 except BrokenProcessPool:
+                    _log.warning("a process that shares the work was killed; all are started again")
                     self._pool.shutdown()
             self._pool = ProcessPoolExecutor(self.width, get_context("spawn"), _begin)
             return self._pool.submit(call, *arguments)
@@ -59,8 +61,8 @@ class Processes:
         if not isinstance(error, BrokenProcessPool):
             return None
         return WorkerLost(
-            f"a process that shared the work was killed, {self.tries} times at the same job; "
-            "memory may have run out",
+            "a process that shared the work was killed, and so it was whenever its jobs were done "
+            "again; memory may have run out",
             remedy="Give fewer --workers.",
         )
 

@@ -77,6 +77,23 @@ def test_a_killed_process_is_told_with_a_remedy() -> None:
     assert "--workers" in str(error.value)
 
 
+def end_twice(tool: Path, job: int) -> int:
+    """Ends its process at job 5, at the first two tries."""
+    marks = [tool / f"{job}.{number}" for number in range(2)]
+    left = [mark for mark in marks if not mark.exists()]
+    if job == 5 and left:
+        left[0].touch()
+        os._exit(1)
+    return 10 * job
+
+
+def test_jobs_of_a_killed_process_are_done_once_more(tmp_path, caplog) -> None:
+    done = dict(share_out(end_twice, range(12), build=partial(Path, tmp_path), workers=2))
+    assert done == {job: 10 * job for job in range(12)}
+    assert len(list(tmp_path.iterdir())) == 2
+    assert "was killed; all are started again" in caplog.text
+
+
 def warns(tool: list[int], job: int) -> int:
     logger = logging.getLogger("drake")
     logger.warning("a link has no mass")
