@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from drake_screw.errors import ModelError
 from drake_screw.execution.allowed import Allowed, said
 from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
@@ -48,6 +49,7 @@ class StationConfig:
         limits: how fast plans are executed.
         free_objects: whether objects can be pushed.
         allowed: what an execution may do and be flawless.
+        model: hash of the robot's model that plans were made with; None where it does not matter.
     """
 
     robot: RobotConfig
@@ -57,6 +59,7 @@ class StationConfig:
     limits: TimeLimits = field(default_factory=TimeLimits)
     free_objects: bool = False
     allowed: Allowed = field(default_factory=Allowed)
+    model: str | None = None
 
     def build(self) -> Station:
         """The station."""
@@ -78,8 +81,18 @@ class Bench:
 
     @classmethod
     def of(cls, config: StationConfig) -> Bench:
-        """Built for this process."""
-        return cls(config, config.build())
+        """Built for this process.
+
+        Raises:
+            ModelError: the model cannot be read here, or is another one than plans were made with.
+        """
+        station = config.build()
+        if config.model not in (None, station.model):
+            raise ModelError(
+                "the robot's model is not the one that plans were made with",
+                file=config.robot.model,
+            )
+        return cls(config, station)
 
 
 def execute_all(

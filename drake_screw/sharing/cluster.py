@@ -54,7 +54,7 @@ class Cluster:
     def __init__(self, client: Client, address: str, patience: float = PATIENCE) -> None:
         self._client, self._address, self._patience = client, address, patience
         self._executor = client.get_executor(pure=False)
-        self._threads, self._looked = 0, 0.0
+        self._threads, self._looked, self._met = 0, 0.0, False
         self._alone_since: float | None = None
         self._look()
 
@@ -108,7 +108,7 @@ class Cluster:
         except Exception as error:
             raise self._gone() from error
         if self._threads:
-            self._alone_since = None
+            self._alone_since, self._met = None, True
         elif self._alone_since is None:
             self._alone_since = self._looked
             _log.warning(
@@ -116,9 +116,15 @@ class Cluster:
                 self._address, self._patience, self._address,
             )  # fmt: skip
         elif self._looked - self._alone_since > self._patience:
+            start = f"dask worker {self._address} --nthreads 1 --nworkers auto"
+            if self._met:
+                raise ClusterError(
+                    f"all workers of the scheduler {self._address} are gone; jobs may have ended "
+                    "them, for want of memory say",
+                    remedy=f"See what they said last, and start some: {start}",
+                )
             raise ClusterError(
-                f"no workers at the scheduler {self._address}",
-                remedy=f"Start some: dask worker {self._address} --nthreads 1 --nworkers auto",
+                f"no workers at the scheduler {self._address}", remedy=f"Start some: {start}"
             )
 
     def _gone(self) -> ClusterError:

@@ -11,6 +11,8 @@ import time
 from pathlib import Path
 from typing import Self
 
+from drake_screw.sharing.cluster import Cluster
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -54,6 +56,15 @@ class DaskProcesses:
                 "--local-directory", str(self._folder),
             )  # fmt: skip
             self._workers.append(worker)
+
+    @staticmethod
+    def wait_for_workers(joined: Cluster, count: int) -> None:
+        """Wait until there are so many."""
+        late = time.monotonic() + 60
+        while joined.width != count:
+            assert time.monotonic() < late, f"{joined.width} workers"
+            time.sleep(0.2)
+            joined.watch()
 
     def kill_worker(self, number: int) -> None:
         """Kill one as the operating system does when memory runs out."""
