@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 PATIENCE = 60.0
 """s, that a cluster without workers is waited for."""
 
+_LOT = 0.25  # s, for a lot of jobs at least
+_LOTS = 50.0  # in a second, for all workers together, that scheduler and client easily deal with
 _ANSWER = 10.0  # s, for a scheduler to answer
 _LOOK = 1.0  # s, between looks at who is there
 _EXAMPLE = "tcp://HOST:8786"
@@ -62,6 +64,11 @@ class Cluster:
     def width(self) -> int:
         """See `Executor.width`: threads of all workers."""
         return self._threads
+
+    @property
+    def lot_seconds(self) -> float:
+        """See `Executor.lot_seconds`; so many that a scheduler of many workers keeps up."""
+        return max(_LOT, self._threads / _LOTS)
 
     def submit(self, call: Callable[..., _Result], *arguments: Any) -> Future[_Result]:
         """See `Executor.submit`."""

@@ -109,7 +109,7 @@ def _shared(
         while lots or under_way:
             shares = _AHEAD * max(1, executor.width)
             while lots and len(under_way) < shares:
-                lot = lots.take(shares)
+                lot = lots.take(shares, executor.lot_seconds)
                 chosen = [jobs[place] for place in lot.places]
                 under_way[executor.submit(carry_out, need, work, chosen)] = lot
             for future in wait(under_way, _LOOK, FIRST_COMPLETED).done:

@@ -33,6 +33,11 @@ class Executor(Protocol):
         """How many calls are carried out at a time, as things are; processes come and go."""
         ...
 
+    @property
+    def lot_seconds(self) -> float:
+        """How long a lot of jobs is to take: far longer than sending it, and little to lose."""
+        ...
+
     def submit(self, call: Callable[..., _Result], *arguments: Any) -> Future[_Result]:
         """Have a function of a module called; it and its arguments are pickled."""
         ...

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
-SECONDS = 0.25
-"""That a lot is to take: far more than sending it, and little to lose with a process."""
-
 MOST = 1000
 """Jobs in a lot."""
 
@@ -40,12 +37,17 @@ class Lots:
     def __bool__(self) -> bool:
         return self._next < self._count or bool(self._again)
 
-    def take(self, shares: int) -> Lot:
-        """The next lot, where `shares` of them are under way at a time."""
+    def take(self, shares: int, seconds: float) -> Lot:
+        """The next lot.
+
+        Args:
+            shares: how many lots are under way at a time.
+            seconds: that one is to take.
+        """
         if self._again:
             return self._again.popleft()
         first = self._next
-        self._next = min(first + self._size(shares), self._count)
+        self._next = min(first + self._size(shares, seconds), self._count)
         return Lot(range(first, self._next))
 
     def put_back(self, lot: Lot) -> None:
@@ -57,8 +59,8 @@ class Lots:
         each = seconds / len(lot.places)
         self._mean = each if self._mean is None else 0.7 * self._mean + 0.3 * each
 
-    def _size(self, shares: int) -> int:
+    def _size(self, shares: int, seconds: float) -> int:
         if self._mean is None:
             return 1
         fair = -(-(self._count - self._next) // shares)
-        return max(1, min(fair, MOST, int(SECONDS / max(self._mean, 1e-9))))
+        return max(1, min(fair, MOST, int(seconds / max(self._mean, 1e-9))))

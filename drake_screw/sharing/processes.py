@@ -35,7 +35,7 @@ class Processes:
         count: of processes.
     """
 
-    tries = 3
+    tries, lot_seconds = 3, 0.25
 
     def __init__(self, count: int) -> None:
         self.width = count

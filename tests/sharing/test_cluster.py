@@ -63,6 +63,12 @@ def test_every_job_is_done_once_by_workers_and_keeps_its_place(joined: Cluster) 
     assert threading.get_ident() not in threads
 
 
+def test_lots_are_the_longer_the_more_workers_there_are(joined, monkeypatch) -> None:
+    assert joined.lot_seconds == 0.25
+    monkeypatch.setattr(joined, "_threads", 1000)
+    assert joined.lot_seconds == 20.0
+
+
 def test_what_jobs_need_is_built_once_in_a_thread_and_again_for_other_work(joined) -> None:
     _built.clear()
     with Crew(partial(tool, 1000), joined) as first, Crew(partial(tool, 2000), joined) as second:

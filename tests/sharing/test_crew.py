@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from drake_screw.sharing import SharingError, WorkerLost, crew, share_out
-from drake_screw.sharing.lots import SECONDS, Lots
+from drake_screw.sharing.lots import Lots
 
 
 class Lost(Exception):
@@ -19,7 +19,7 @@ class Lost(Exception):
 class Here:
     """An executor that carries a call out when it is next looked at."""
 
-    width = 3
+    width, lot_seconds = 3, 0.25
 
     def __init__(self, tries: int = 3, fails: Callable[[list[int]], bool] = lambda jobs: False):
         self.tries, self.fails = tries, fails
@@ -81,21 +81,21 @@ def test_few_lots_are_under_way_however_many_jobs_there_are() -> None:
 @pytest.mark.parametrize("seconds", [0.001, 0.02, 3.0])
 def test_a_lot_takes_a_quarter_second_or_is_a_single_job(seconds: float) -> None:
     lots = Lots(10_000)
-    assert len(lots.take(4).places) == 1
+    assert len(lots.take(4, 0.25).places) == 1
     for _ in range(5):
-        lot = lots.take(4)
+        lot = lots.take(4, 0.25)
         lots.took(lot, seconds * len(lot.places))
-    jobs = len(lots.take(4).places)
-    assert jobs == max(1, int(SECONDS / seconds))
+    jobs = len(lots.take(4, 0.25).places)
+    assert jobs == max(1, int(0.25 / seconds))
 
 
 def test_the_last_lots_are_small_so_that_all_have_some() -> None:
     lots = Lots(41)
-    first = lots.take(4)
+    first = lots.take(4, 0.25)
     lots.took(first, 1e-6)
     sizes = []
     while lots:
-        sizes.append(len(lots.take(4).places))
+        sizes.append(len(lots.take(4, 0.25).places))
     assert sum(sizes) == 40
     assert sizes[0] == 10
     assert sizes[-1] == 1
