@@ -31,6 +31,7 @@ from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Outcomes, concatenate
 from drake_screw.runs.run import open_run
+from drake_screw.sharing import Workers
 from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
@@ -67,7 +68,7 @@ def execute(
     *,
     per_region: int = 2,
     instance: InstanceLike | None = None,
-    workers: int | None = None,
+    workers: Workers = None,
     free_objects: bool = False,
     tell: Tell = to_nobody,
 ) -> Executions:
@@ -83,7 +84,7 @@ def execute(
         per_region: executions in every region; instances without a plan are drawn again, and
             reported.
         instance: execute this one instead: {object: (x, y[, yaw])}, or as `placed` takes them.
-        workers: processes; as many as processors if None.
+        workers: processes, as many as processors if None; or a cluster.
         free_objects: objects can be pushed, and pushing one farther than the scenario's block
             `execution` allows is a flaw; else they are locked in place.
         tell: told how many are executed, and how many there are.
@@ -168,7 +169,7 @@ def _executed(
     setup: Setup,
     best: Mapping[int, RankedPlan],
     X_WO: Array,
-    workers: int | None,
+    workers: Workers,
     tell: Tell,
     *,
     free_objects: bool,

@@ -60,7 +60,7 @@ SHARED = """
 import os, signal, threading, time
 from tests.commands.test_signals import wait
 from drake_screw.commands.signals import interruptible
-from drake_screw.processes import Crew
+from drake_screw.sharing import Crew
 
 def twice():
     os.kill(os.getpid(), signal.SIGINT)
