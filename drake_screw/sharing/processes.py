@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process
+from multiprocessing import get_context, parent_process, resource_tracker
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from threading import Thread
@@ -50,6 +50,7 @@ class Processes:
                 except BrokenProcessPool:
                     _log.warning("a process that shares the work was killed; all are started again")
                     self._pool.shutdown()
+            _begin_tracker()
             self._pool = ProcessPoolExecutor(self.width, get_context("spawn"), _begin)
             return self._pool.submit(call, *arguments)
 
@@ -83,6 +84,22 @@ def _end_with(parent: BaseProcess | None) -> None:
     if parent is not None:
         wait([parent.sentinel])
         os._exit(1)
+
+
+def _begin_tracker() -> None:
+    """Starts the process that removes semaphores which are left behind, without a word of it.
+
+    They are left by a process that ends at once, as at the second Ctrl-C, and that is no fault.
+    """
+    before = os.environ.get("PYTHONWARNINGS")
+    quiet = "ignore:resource_tracker:UserWarning"
+    os.environ["PYTHONWARNINGS"] = quiet if before is None else f"{before},{quiet}"
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        del os.environ["PYTHONWARNINGS"]
+        if before is not None:
+            os.environ["PYTHONWARNINGS"] = before
 
 
 @contextmanager
