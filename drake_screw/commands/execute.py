@@ -97,7 +97,7 @@ def execute(
     count = 2 if per_region is None else per_region
     with (
         chosen_workers(workers, scheduler, output) as shared,
-        Countdown("executed", output.console) as countdown,
+        Countdown(output.console, at_once=True) as countdown,
     ):
         done = executions.execute(
             run,
@@ -105,7 +105,7 @@ def execute(
             instance=place,
             workers=shared,
             free_objects=free_objects,
-            progress=countdown,
+            tell=countdown,
         )
     output.present(done)
     raise typer.Exit(0 if done.summary.flawless else 1)
