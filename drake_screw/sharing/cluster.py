@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import pickle
 import socket
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -33,6 +34,7 @@ _ANSWER = 10.0  # s, for a scheduler to answer
 _LOOK = 1.0  # s, between looks at who is there
 _EXAMPLE = "tcp://HOST:8786"
 _SHARED = "Every worker needs the files that are read at the same paths, in a shared folder say."
+_ALIKE = "Start the workers with the same environment as here, one in a shared folder say."
 
 _Result = TypeVar("_Result")
 _log = logging.getLogger(__name__)
@@ -72,8 +74,9 @@ class Cluster:
 
     def submit(self, call: Callable[..., _Result], *arguments: Any) -> Future[_Result]:
         """See `Executor.submit`."""
+        sent = pickle.dumps(_Call(environment(), call, *arguments))
         try:
-            future: Future[_Result] = self._executor.submit(_there, environment(), call, *arguments)
+            future: Future[_Result] = self._executor.submit(pickle.loads, sent)
         except Exception as error:
             raise self._gone() from error
         return future
@@ -97,10 +100,10 @@ class Cluster:
                 remedy="Memory may have run out: give workers more of it (dask worker "
                 "--memory-limit), or start fewer on a machine. What they said last may tell.",
             )
-        if isinstance(error, ModuleNotFoundError):
+        if isinstance(error, ModuleNotFoundError) or "Can't get attribute" in str(error):
             return ClusterError(
-                f"a worker at {self._address} lacks what the work needs: {error}",
-                remedy="Install the same packages for the workers as here.",
+                f"a worker at {self._address} does not have drake_screw as it is here: {error}",
+                remedy=_ALIKE,
             )
         return None
 
@@ -239,13 +242,11 @@ def _no_scheduler(address: str) -> ClusterError:
 def _check_workers(found: Mapping[str, Mapping[str, str] | Exception]) -> None:
     """Raises ClusterError for the first worker that differs from this machine."""
     for address, theirs in sorted(found.items()):
-        if isinstance(theirs, ModuleNotFoundError):
-            raise ClusterError(
-                f"worker {address} lacks drake_screw: {theirs}",
-                remedy="Install the same version for the workers as here: pip install drake-screw",
-            )
         if isinstance(theirs, Exception):
-            raise ClusterError(f"worker {address} cannot be asked for its versions: {theirs}")
+            raise ClusterError(
+                f"worker {address} does not have drake_screw as it is here: {theirs}",
+                remedy=_ALIKE,
+            )
         _check_alike(address, theirs, environment())
 
 
@@ -258,9 +259,22 @@ def _check_alike(worker: str, theirs: Mapping[str, str], ours: Mapping[str, str]
     if unlike:
         raise ClusterError(
             f"worker {worker} differs from this machine: {'; '.join(unlike)}",
-            remedy="Results depend on these. Start the workers with the same environment as here, "
-            "one in a shared folder say.",
+            remedy=f"Results depend on these. {_ALIKE}",
         )
+
+
+class _Call:
+    """A call that is made where it is unpickled.
+
+    A worker that cannot import what is called lives, and says that; if Dask sent the function
+    itself it would end.
+    """
+
+    def __init__(self, *arguments: Any) -> None:
+        self._arguments = arguments
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _there, self._arguments
 
 
 def _there(ours: Mapping[str, str], call: Callable[..., _Result], *arguments: Any) -> _Result:

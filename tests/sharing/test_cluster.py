@@ -86,6 +86,11 @@ def test_an_error_of_a_job_ends_the_work_and_no_later_one(joined: Cluster) -> No
     assert len(list(share_out(add, range(8), build=partial(tool, 0), workers=joined))) == 8
 
 
+def test_what_cannot_be_sent_is_an_error_of_its_own(joined: Cluster) -> None:
+    with pytest.raises(Exception, match="pickle"):
+        list(share_out(add, [threading.Lock()], build=partial(tool, 0), workers=joined))
+
+
 def test_what_a_worker_lacks_is_said_with_its_name(joined: Cluster) -> None:
     with pytest.raises(ClusterError) as error:
         list(share_out(add, range(8), build=no_recordings, workers=joined))
