@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process, resource_tracker
+from multiprocessing import active_children, get_context, parent_process, resource_tracker
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from threading import Thread
@@ -69,6 +69,8 @@ def processors() -> int:
 class Crew(Generic[_Tool]):
     """Processes that stay for several lots of jobs; a context manager, which ends them.
 
+    It waits for the jobs that they are at, unless it is interrupted.
+
     Args:
         build: makes what the work needs, once in each process; as for `share_out`.
         workers: processes; as many as processors if None. With 1 everything is done in this one.
@@ -77,14 +79,19 @@ class Crew(Generic[_Tool]):
     def __init__(self, build: Callable[[], _Tool], workers: int | None = None) -> None:
         self._build, self._workers = build, processors() if workers is None else workers
         self._pool: ProcessPoolExecutor | None = None
+        self._processes: set[BaseProcess] = set()
         self._tools: list[_Tool] = []
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        if self._pool is not None:
-            self._pool.shutdown(cancel_futures=True)
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if self._pool is None:
+            return
+        if kind is KeyboardInterrupt:  # nobody waits for jobs that are half done
+            for process in self._processes:
+                process.terminate()
+        self._pool.shutdown(cancel_futures=True)
 
     def share(
         self, work: Callable[[_Tool, _Job], _Answer], jobs: Sequence[_Job]
@@ -102,8 +109,10 @@ class Crew(Generic[_Tool]):
             _begin_tracker()
             context = get_context("spawn")
             self._pool = ProcessPoolExecutor(self._workers, context, _begin, (self._build,))
+        before = set(active_children())
         with _ctrl_c_held():
             places = {self._pool.submit(_work, work, job): place for place, job in enumerate(jobs)}
+        self._processes |= set(active_children()) - before
         try:
             for done in as_completed(places):
                 yield places[done], done.result()
