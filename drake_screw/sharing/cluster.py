@@ -107,7 +107,7 @@ class Cluster:
             )
         return None
 
-    def close(self) -> None:
+    def close(self, *, at_once: bool = False) -> None:
         """See `Executor.close`; the cluster stays for other work."""
 
     def _look(self) -> None:

@@ -62,6 +62,8 @@ def share_out(
 class Crew(Generic[_Tool]):
     """Processes that stay for several shares of jobs; a context manager, which lets them go.
 
+    It waits for the jobs that they are at, unless it is interrupted.
+
     Args:
         build: makes what the work needs, once in each process; as for `share_out`.
         workers: as for `share_out`.
@@ -80,9 +82,9 @@ class Crew(Generic[_Tool]):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if self._executor is not None:
-            self._executor.close()
+            self._executor.close(at_once=kind is KeyboardInterrupt)
 
     def share(
         self, work: Callable[[_Tool, _Job], _Answer], jobs: Sequence[_Job]

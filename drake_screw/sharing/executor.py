@@ -54,6 +54,10 @@ class Executor(Protocol):
         """What became of a process whose call ended so; None where the error is the call's own."""
         ...
 
-    def close(self) -> None:
-        """Nothing more will be submitted by this crew."""
+    def close(self, *, at_once: bool = False) -> None:
+        """Nothing more will be submitted by this crew.
+
+        Args:
+            at_once: do not wait for calls under way; nobody needs what comes of them.
+        """
         ...

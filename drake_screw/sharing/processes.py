@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process, resource_tracker
+from multiprocessing import active_children, get_context, parent_process, resource_tracker
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from threading import Thread
@@ -40,6 +40,7 @@ class Processes:
     def __init__(self, count: int) -> None:
         self.width = count
         self._pool: ProcessPoolExecutor | None = None
+        self._started: set[BaseProcess] = set()
 
     def submit(self, call: Callable[..., _Result], *arguments: Any) -> Future[_Result]:
         """See `Executor.submit`."""
@@ -51,8 +52,11 @@ class Processes:
                     _log.warning("a process that shares the work was killed; all are started again")
                     self._pool.shutdown()
             _begin_tracker()
+            before = set(active_children())
             self._pool = ProcessPoolExecutor(self.width, get_context("spawn"), _begin)
-            return self._pool.submit(call, *arguments)
+            first = self._pool.submit(call, *arguments)
+            self._started = set(active_children()) - before
+            return first
 
     def watch(self) -> None:
         """See `Executor.watch`; a pool tells by itself what it lost."""
@@ -67,10 +71,14 @@ class Processes:
             remedy="Give fewer --workers.",
         )
 
-    def close(self) -> None:
+    def close(self, *, at_once: bool = False) -> None:
         """See `Executor.close`."""
-        if self._pool is not None:
-            self._pool.shutdown(cancel_futures=True)
+        if self._pool is None:
+            return
+        if at_once:
+            for process in self._started:
+                process.terminate()
+        self._pool.shutdown(cancel_futures=True)
 
 
 def _begin() -> None:

@@ -75,22 +75,38 @@ if __name__ == "__main__":
 """
 
 
+ONCE = SHARED.replace("os.kill(os.getpid(), signal.SIGTERM)", "pass").replace("5, 5, 5", "900, 900")
+
+
+def test_nobody_waits_for_what_processes_are_at(tmp_path: Path) -> None:
+    """The first of two long jobs has begun when the work is interrupted."""
+    done = shared(tmp_path, ONCE, timeout=300)
+    assert done.returncode != 0
+    assert done.stderr.splitlines()[-1] == "KeyboardInterrupt"
+    assert "Broken" not in done.stderr
+
+
+def shared(folder: Path, text: str, timeout: float | None = None):
+    """What a script comes to that shares work out."""
+    script = folder / "shared.py"
+    script.write_text(text)
+    return subprocess.run(
+        [sys.executable, str(script)],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=timeout,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+    )
+
+
 def wait(tool: dict, seconds: float) -> None:
     time.sleep(seconds)
 
 
 def test_nor_is_a_word_said_of_what_its_processes_shared(tmp_path: Path) -> None:
     """While it waits for them; what it leaves is removed by a process that outlives it."""
-    script = tmp_path / "shared.py"
-    script.write_text(SHARED)
-    root = str(Path(__file__).parents[2])
-    done = subprocess.run(
-        [sys.executable, str(script)],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "PYTHONPATH": root},
-    )
+    done = shared(tmp_path, SHARED)
     assert (done.returncode, done.stdout, done.stderr) == (INTERRUPTED, "", "")
 
 

@@ -51,7 +51,7 @@ class Here:
     def lost(self, error: Exception) -> SharingError | None:
         return WorkerLost("lost") if isinstance(error, Lost) else None
 
-    def close(self) -> None:
+    def close(self, *, at_once: bool = False) -> None:
         self.closed = True
 
 
