@@ -1,9 +1,13 @@
 """The documentation site, built by ``make docs``. Its source folder is the root of the checkout."""
 
+import re
 import sys
 from importlib.metadata import version as version_of
 from pathlib import Path
+from typing import Any
 
+from docutils import nodes
+from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
 
 SITE = Path(__file__).parent
@@ -54,7 +58,7 @@ autodoc_preserve_defaults = True
 autodoc_type_aliases = {name: name for name in ("Array", "PathLike")}
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
-napoleon_use_ivar = True
+napoleon_use_ivar = False
 napoleon_attr_annotations = False
 napoleon_custom_sections = [("Input ports", "params_style"), ("Output ports", "params_style")]
 
@@ -70,6 +74,9 @@ linkcheck_anchors = False
 
 def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _keep_first_line, priority=400)
+    app.connect("autodoc-process-signature", _short_types)
+    app.connect("doctree-read", _look_up_nearby)
+    app.connect("html-page-context", _without_way_back)
 
 
 def _keep_first_line(
@@ -78,3 +85,26 @@ def _keep_first_line(
     """Napoleon takes what is before a colon in the first line of an attribute for its type."""
     if what in ("attribute", "data", "property"):
         lines.insert(0, "")
+
+
+def _short_types(
+    app: Sphinx, what: str, name: str, obj: object, options: object, *parts: str | None
+) -> tuple[str | None, ...]:
+    """Names of types instead of what autodoc puts for them inside other types."""
+    named = re.compile(r"TypeAliasForwardRef\('(\w+)'\)")
+    return tuple(text and named.sub(r"\1", text) for text in parts)
+
+
+def _look_up_nearby(app: Sphinx, doctree: nodes.document) -> None:
+    """Only classes are known by their names alone; `q` is not any attribute that is called so."""
+    for reference in doctree.findall(pending_xref):
+        if not re.match("[A-Z][a-z]", reference["reftarget"]):
+            reference.attributes.pop("refspecific", None)
+
+
+def _without_way_back(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: nodes.document | None
+) -> None:
+    """Source pages lead back by one package's names for a module; others' would be dead links."""
+    if page.startswith("_modules/"):
+        context["body"] = re.sub('<a class="viewcode-back".*?</a>', "", context["body"])

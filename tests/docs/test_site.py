@@ -30,8 +30,9 @@ def load(name: str) -> ModuleType:
 
 def in_toctrees(page: Path) -> set[str]:
     """What the toctrees of a page list, as paths from the root of the checkout without suffix."""
-    entries = " ".join(TOCTREE.findall(page.read_text())).split()
-    return {str((page.parent / entry).resolve().relative_to(ROOT)) for entry in entries}
+    entries = "\n".join(TOCTREE.findall(page.read_text())).split("\n")
+    names = [re.sub(r".*<(.*)>", r"\1", entry) for entry in entries if entry]
+    return {str((page.parent / name).resolve().relative_to(ROOT)) for name in names}
 
 
 def test_every_page_and_tutorial_is_in_a_toctree() -> None:
