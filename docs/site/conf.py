@@ -40,6 +40,7 @@ html_css_files = ["site.css"]
 html_extra_path = ["root"]
 html_math_renderer = "mathml"
 html_copy_source = False
+html_show_copyright = False
 
 myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath"]
 myst_heading_anchors = 4
@@ -55,7 +56,7 @@ default_role = "py:obj"
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
-autodoc_type_aliases = {name: name for name in ("Array", "PathLike")}
+autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "PathLike")}
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 napoleon_use_ivar = False
