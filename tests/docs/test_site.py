@@ -109,3 +109,38 @@ def test_what_cannot_be_drawn_of_a_formula_is_a_warning_and_shown_as_it_is(
     with caplog.at_level("WARNING"):
         assert mathml.converted(wrong, block=False) == r"<code>\nosuchthing &lt; 1</code>"
     assert "nosuchthing" in caplog.text
+
+
+@pytest.fixture
+def execute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """`docs/site/execute.py` on a checkout of one module and one notebook, which raises."""
+    pytest.importorskip("jupyter_cache")
+    import nbformat
+
+    module = load("execute")
+    monkeypatch.setattr(module, "ROOT", tmp_path)
+    for folder in ("drake_screw", "tutorials"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "drake_screw" / "a.py").write_text("x = 1\n")
+    cells = [nbformat.v4.new_code_cell("1 / 0")]
+    nbformat.write(nbformat.v4.new_notebook(cells=cells), tmp_path / "tutorials" / "bad.ipynb")
+    return module
+
+
+def test_outputs_are_kept_by_what_they_were_made_with(execute: ModuleType) -> None:
+    before = execute.cache_folder()
+    assert execute.cache_folder() == before
+    (execute.ROOT / "drake_screw" / "a.py").write_text("x = 2\n")
+    assert execute.cache_folder() != before
+
+
+def test_a_tutorial_that_raises_fails_the_build(
+    execute: ModuleType, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        execute.main()
+    assert ended.value.code == 1
+    out, err = capfd.readouterr()
+    assert "executed 0 notebooks; 1 failed" in out
+    assert "bad.ipynb:" in err
+    assert "division by zero" in err
