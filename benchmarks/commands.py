@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.files import now
-from drake_screw.runs.directory import versions
+from drake_screw.versions import versions
 
 PLACES = "x,y\n" + "".join(f"{0.75 + 0.01 * i:.2f},{0.02 * i:.2f}\n" for i in range(20))
 

@@ -31,7 +31,7 @@ from drake_screw.commands.any_console import any_console
 from drake_screw.commands.instance_option import InstanceCommand
 from drake_screw.commands.log import set_up_logging
 from drake_screw.commands.options import VerboseOption
-from drake_screw.commands.signals import interruptible
+from drake_screw.commands.signals import Verbs, interruptible
 from drake_screw.errors import DrakeScrewError, shortened
 
 BAD_INPUT = 2
@@ -60,6 +60,7 @@ _log = logging.getLogger(__name__)
 
 app = typer.Typer(
     name="drake-screw",
+    cls=Verbs,
     help="Manipulation plans from few demonstrations: measure how much of a work area they cover, "
     "and learn where to give the next one.",
     epilog="Begin with:  drake-screw run pouring",

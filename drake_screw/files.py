@@ -35,16 +35,33 @@ def write_bytes(file: Path, content: bytes) -> None:
     Raises:
         OSError: it cannot be written.
     """
+    try:
+        with appearing(file) as temporary:
+            temporary.write_bytes(content)
+    except OSError as error:
+        error.add_note(f"{_size(len(content))} are needed for {file.name}")
+        raise
+
+
+@contextmanager
+def appearing(file: Path) -> Iterator[Path]:
+    """A context in which a file is written bit by bit, and after which it is there whole.
+
+    Yields:
+        Where to write it, in the same folder. If something is raised, nothing stays of it.
+
+    Raises:
+        OSError: it cannot be written.
+    """
     if file.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
     temporary = file.with_name(f".{file.name}.part")
     try:
-        temporary.write_bytes(content)
+        yield temporary
         os.replace(temporary, file)
-    except OSError as error:
+    except BaseException:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
-        error.add_note(f"{_size(len(content))} are needed for {file.name}")
         raise
 
 

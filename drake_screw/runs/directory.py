@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import platform
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self, TextIO
 
@@ -152,9 +150,3 @@ class RunDirectory:
 
 def _appending(file: Path) -> TextIO:
     return file.open("a", encoding="utf-8", errors="backslashreplace")
-
-
-def versions() -> dict[str, str]:
-    """Versions of all that a result may depend on."""
-    packages = ("drake-screw", "drake", "numpy", "scipy", "numba")
-    return {"python": platform.python_version(), **{name: version(name) for name in packages}}

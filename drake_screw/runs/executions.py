@@ -31,6 +31,8 @@ from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Outcomes, concatenate
 from drake_screw.runs.run import open_run
+from drake_screw.sharing import Workers
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.lifetime import scratch
@@ -66,9 +68,9 @@ def execute(
     *,
     per_region: int = 2,
     instance: InstanceLike | None = None,
-    workers: int | None = None,
+    workers: Workers = None,
     free_objects: bool = False,
-    progress: Callable[[int, int], None] | None = None,
+    tell: Tell = to_nobody,
 ) -> Executions:
     """Plan, simulate and report executions of a run.
 
@@ -82,10 +84,10 @@ def execute(
         per_region: executions in every region; instances without a plan are drawn again, and
             reported.
         instance: execute this one instead: {object: (x, y[, yaw])}, or as `placed` takes them.
-        workers: processes; as many as processors if None.
+        workers: processes, as many as processors if None; or a cluster.
         free_objects: objects can be pushed, and pushing one farther than the scenario's block
             `execution` allows is a flaw; else they are locked in place.
-        progress: called with how many are done and how many there are to simulate.
+        tell: told how many are executed, and how many there are.
 
     Raises:
         DrakeScrewError: the run cannot be read or has no demonstrations, the instance is not one,
@@ -113,7 +115,7 @@ def execute(
     X_WO = setup.area.X_WO(coordinates)
     solved = np.flatnonzero(outcomes.any_success).tolist()
     best = {i: setup.plan(demonstrations, coordinates[i], most=1) for i in solved}
-    done = _executed(setup, best, X_WO, workers, progress, free_objects=free_objects)
+    done = _executed(setup, best, X_WO, workers, tell, free_objects=free_objects)
     trials = []
     for i, place in enumerate(coordinates):
         region = int(setup.regions.index(place))
@@ -167,8 +169,8 @@ def _executed(
     setup: Setup,
     best: Mapping[int, RankedPlan],
     X_WO: Array,
-    workers: int | None,
-    progress: Callable[[int, int], None] | None,
+    workers: Workers,
+    tell: Tell,
     *,
     free_objects: bool,
 ) -> dict[int, Execution]:
@@ -176,16 +178,15 @@ def _executed(
     done: dict[int, Execution] = {}
 
     def told(count: int, _: int, before: int) -> None:
-        if progress is not None:
-            progress(before + count, len(best))
+        tell(Step("executed", before + count, len(best)))
 
     for one in setup.arms:
         own = [i for i, plan in best.items() if plan.arm is one.arm]
         if own:
             config = station_config(setup, one.robot, free_objects=free_objects)
             jobs = [Job(best[i].plan, X_WO[i]) for i in own]
-            tell = partial(told, before=len(done))
-            executed = execute_all(config, jobs, workers=workers, progress=tell)
+            progress = partial(told, before=len(done))
+            executed = execute_all(config, jobs, workers=workers, progress=progress)
             done |= dict(zip(own, executed, strict=True))
     return done
 

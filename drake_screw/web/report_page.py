@@ -17,6 +17,7 @@ from drake_screw.planning import Cause
 from drake_screw.planning.touching import count_collisions
 from drake_screw.runs.reader import RunReader
 from drake_screw.runs.summary import count_executions
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.meshcat_page import render
@@ -38,12 +39,13 @@ OTHERS = 2
 _REMEDY = "A report is written into its run directory; make the folder writable."
 
 
-def write_report(reader: RunReader, folder: Path | None = None) -> Path:
+def write_report(reader: RunReader, folder: Path | None = None, tell: Tell = to_nobody) -> Path:
     """Write report.html, and a 3-D page for an instance of each round into the folder inspect.
 
     Args:
         reader: the run.
         folder: where to; the run directory if None.
+        tell: told how far it is.
 
     Returns:
         The report.
@@ -57,6 +59,7 @@ def write_report(reader: RunReader, folder: Path | None = None) -> Path:
     linkages = tuple(Linkage(workcell) for workcell in reader.setup.workcells)
     rounds = []
     for round in range(reader.rounds):
+        tell(Step("drawing instances", round, reader.rounds))
         selection = select(reader, round)
         page = f"{PAGES}/round_{round + 1:02d}"
         save_page(reader, selection, folder / f"{page}.html")

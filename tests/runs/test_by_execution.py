@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import processes
+from drake_screw.sharing import crew
 from drake_screw.acquisition import InstancesExecuted, RoundFinished, Suggestion
 from drake_screw.assembly import executing
 from drake_screw.assembly.placing import placed
@@ -73,7 +73,7 @@ def stand(monkeypatch) -> Stand:
     stand = Stand()
     monkeypatch.setattr(executing, "judge", stand)
     monkeypatch.setattr(Bench, "of", classmethod(lambda cls, config: cls(config, None)))
-    monkeypatch.setattr(processes, "processors", lambda: 1)
+    monkeypatch.setattr(crew, "processors", lambda: 1)
     return stand
 
 

@@ -102,7 +102,7 @@ def test_the_table_of_regions_is_csv() -> None:
     regions = grid_regions(AREA, {"x": 2})
     rows = list(csv.DictReader(io.StringIO(regions_csv(verdict_of(2, samples=0), regions))))
     assert [row["region"] for row in rows] == ["0", "1"]
-    assert [row["bowl, blue_x_min"] for row in rows] == ["0.5", "0.75"]
+    assert [row["x_min"] for row in rows] == ["0.5", "0.75"]
     assert rows[1]["lower"] == "0.333333"
     assert rows[0]["failure_rate"] == "nan"
     assert None not in rows[0]

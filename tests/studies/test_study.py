@@ -267,7 +267,7 @@ def test_a_finished_study_or_one_from_before_ompl_was_noted_is_opened_anyway(
         monkeypatch.setattr(connection, "available", lambda: False)
         record = finished.record | {"led_around": before, "runs": runs}
         study = Study(finished.path, free, record)
-        monkeypatch.setattr(Study, "_results", lambda *_: iter(()))
+        monkeypatch.setattr("drake_screw.studies.study.shared_runs", lambda *_: iter(()))
         monkeypatch.setattr(Study, "_conclude", lambda _: None)
         monkeypatch.setattr(Study, "_save", lambda *_: None)
         assert list(study.carry_out(1)) == []
