@@ -20,7 +20,7 @@ class ScrewChain:
     Attributes:
         joint_names: n names, base to end effector.
         screws: (n, 6) the spatial twist [w; v] of each joint at q = 0, in W about its origin.
-            A revolute joint has |w| = 1; a prismatic one w = 0 and |v| = 1.
+            A revolute joint has ``|w| = 1``; a prismatic one ``w = 0`` and ``|v| = 1``.
         home: (4, 4) X_WE at q = 0.
         lower, upper: (n,) joint limits, rad or m; infinite where a joint has none.
     """
