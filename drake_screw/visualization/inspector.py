@@ -17,12 +17,14 @@ import numpy as np
 from pydrake.geometry import Meshcat
 
 from drake_screw.robot import Arm, ObjectConfig, Workcell
+from drake_screw.tasks import Symmetry
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes, screw_shapes
 from drake_screw.visualization.attempt import AHEAD, DONE, FAILED, Attempt
 from drake_screw.visualization.drawing import draw, draw_frames
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
+from drake_screw.visualization.rim_marks import mark_angles
 from drake_screw.visualization.screw_drawing import draw_screw
 
 BOWL = "#f4c95d"
@@ -57,15 +59,21 @@ class Inspector:
         meshcat: drawn into.
         workcells: of each arm that is planned for.
         objects: how the objects look.
+        symmetries: of each object; none has any where left out.
     """
 
     def __init__(
-        self, meshcat: Meshcat, workcells: Sequence[Workcell], objects: Sequence[ObjectConfig]
+        self,
+        meshcat: Meshcat,
+        workcells: Sequence[Workcell],
+        objects: Sequence[ObjectConfig],
+        symmetries: Sequence[Symmetry | None] = (),
     ) -> None:
         self.meshcat = meshcat
         self._workcells = tuple(workcells)
         self._linkages = tuple(Linkage(workcell) for workcell in workcells)
         self._objects = tuple(objects)
+        self._symmetries = tuple(symmetries) or (None,) * len(self._objects)
         self.clear()
 
     def clear(self) -> None:
@@ -74,11 +82,20 @@ class Inspector:
         self.meshcat.Delete("/instance")
 
     def show_instance(self, X_WO: Array) -> None:
-        """Draw the objects at X_WO (k, 4, 4) in place of those before."""
+        """Draw the objects at X_WO (k, 4, 4) in place of those before, marked on their rims."""
         self.meshcat.Delete("/instance")
-        for item, X in zip(self._objects, X_WO, strict=True):
+        for item, symmetry, X in zip(self._objects, self._symmetries, X_WO, strict=True):
             bowl = meshes.bowl(item.radius, item.height).moved(X)
             draw(self.meshcat, f"/instance/{item.name}", bowl, BOWL)
+            angles, lift = mark_angles(symmetry), np.eye(4)
+            lift[2, 3] = item.height
+            if angles is not None:
+                marks = [
+                    screw_shapes.sector(item.radius - 0.012, item.radius + 0.012, a, b, 0.008)
+                    for a, b in zip(angles - 0.08, angles + 0.08, strict=True)
+                ]
+                mark = meshes.join(marks).moved(X @ lift)
+                draw(self.meshcat, f"/instance/{item.name}/turn", mark, INK)
 
     def aim(self, X_WO: Array) -> None:
         """Point the camera at the objects at X_WO (k, 4, 4), with the arm in the picture."""

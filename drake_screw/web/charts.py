@@ -2,31 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from markupsafe import Markup, escape
-from matplotlib.colors import to_hex
 
-from drake_screw.errors import listed
-from drake_screw.planning import Cause
 from drake_screw.screws.endless import drawn_range
-from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import FAILED, Attempt
-from drake_screw.visualization.cells import axis_name, cells
-from drake_screw.visualization.outlines import Outline
-from drake_screw.visualization.palette import (
-    ACCENT,
-    INK,
-    OUTCOME_COLORS,
-    PAPER,
-    STATUS_COLORS,
-    failure_color,
-)
-from drake_screw.visualization.rounds import Round, Sample, sample
+from drake_screw.visualization.palette import STATUS_COLORS
 
-MAP_DOTS = 2_000
 _LINE, _FAINT = "#2b4c7e", "#c9cbd3"
 
 
@@ -115,92 +98,3 @@ def joint_chart(attempt: Attempt) -> Markup:
         f'<svg class="chart" viewBox="0 0 {width:.0f} {bottom + 50:.0f}" '
         f'role="img" aria-label="joint angles along the plan">{"".join(parts)}</svg>'
     )
-
-
-def work_area_map(
-    event: Round,
-    regions: Regions,
-    *,
-    here: Array | None = None,
-    dots: int = MAP_DOTS,
-    things: Sequence[Outline] = (),
-) -> Markup:
-    """The work area from above, as the heat map shows it, small and light.
-
-    y runs to the left and x away from the robot. The drawing's units are mm; ``data-y`` and
-    ``data-x`` hold the m at its left upper corner, so that a script knows where it was clicked.
-
-    Args:
-        event: the round.
-        regions: of the run.
-        here: (k, c) an instance to mark.
-        dots: of so many instances, drawn at random, those that fail are drawn.
-        things: obstacles, which are drawn as far as they are in the work area.
-    """
-    drawn = cells(regions, event.verdict.estimates)
-    (x0, y0), (x1, y1) = drawn.lower.min(axis=0), drawn.upper.max(axis=0)
-
-    def place(x: float, y: float) -> tuple[float, float]:
-        return 1e3 * (y1 - y), 1e3 * (x1 - x)
-
-    parts = []
-    for cell, region in enumerate(drawn.region):
-        (a, b), (c, d) = drawn.lower[cell], drawn.upper[cell]
-        left, top = place(c, d)
-        color = to_hex(failure_color(event.verdict.estimates[region]))
-        parts.append(
-            f'<rect x="{left:.1f}" y="{top:.1f}" width="{1e3 * (d - b):.1f}" '
-            f'height="{1e3 * (c - a):.1f}" fill="{color}" class="cell" data-region="{region}">'
-            f"<title>region {region}: {event.verdict.estimates[region]:.2%} fail</title></rect>"
-        )
-    shown = sample(event.evaluation, dots)
-    for cause, color in OUTCOME_COLORS.items():
-        chosen = (shown.cause == cause) & (cause != Cause.SUCCESS)
-        points = drawn.place(shown.coordinates[chosen])
-        path = "".join(f"M{u:.0f} {v:.0f}h0" for u, v in (place(x, y) for x, y in points))
-        if path:
-            parts.append(
-                f'<path d="{path}" stroke="{color}" stroke-width="9" stroke-linecap="round"/>'
-            )
-    for thing in things if drawn.in_world else ():
-        edge = " ".join(f"{u:.0f},{v:.0f}" for u, v in (place(x, y) for x, y in thing.corners))
-        parts.append(
-            f'<polygon points="{edge}" fill="{PAPER}" fill-opacity="0.45" stroke="{INK}" '
-            f'stroke-width="5" pointer-events="none" class="obstacle"/>'
-        )
-    for number, demonstration in enumerate(event.demonstrations, start=1):
-        u, v = place(*drawn.place_of(demonstration.X_WO))
-        parts.append(
-            f'<circle cx="{u:.1f}" cy="{v:.1f}" r="26" fill="{PAPER}" stroke="{INK}" '
-            f'stroke-width="4"/><text x="{u:.1f}" y="{v + 12:.1f}" text-anchor="middle" '
-            f'class="token">{number}</text>'
-        )
-    marks: Sequence[tuple[Array | None, str, str]] = (
-        (None if event.suggestion is None else event.suggestion.coordinates, ACCENT, "suggested"),
-        (here, INK, "here"),
-    )
-    for coordinates, color, name in marks:
-        if coordinates is not None:
-            u, v = place(*drawn.place(coordinates))
-            parts.append(
-                f'<circle cx="{u:.1f}" cy="{v:.1f}" r="{20 if name == "suggested" else 32}" '
-                f'fill="{color if name == "suggested" else "none"}" stroke="{INK}" '
-                f'stroke-width="{4 if name == "suggested" else 8}" class="{name}"/>'
-            )
-    return Markup(
-        f'<svg class="map" viewBox="-40 -40 {1e3 * (y1 - y0) + 80:.0f} {1e3 * (x1 - x0) + 80:.0f}" '
-        f'data-y="{y1:.6f}" data-x="{x1:.6f}">{"".join(parts)}</svg>'
-    )
-
-
-def map_words(event: Round, shown: Sample, regions: Regions) -> str:
-    """What the dots of `work_area_map` are, and how many of the instances `shown` in 3-D."""
-    words = f"dots: what fails of {sample(event.evaluation, MAP_DOTS).statement}"
-    drawn = cells(regions, event.verdict.estimates)
-    if drawn.others or not drawn.in_world:
-        up, aside = (axis_name(drawn.area, axis) for axis in drawn.axes)
-        words = f"{up} upwards, {aside} to the left; {words}"
-    if drawn.others:
-        how = "the worst region" if drawn.stack > 1 else "the mean"
-        words += f"; colours: {how} over {listed(drawn.others)}"
-    return words if len(shown.cause) == shown.total else f"{words} (in 3-D: {len(shown.cause):,})"

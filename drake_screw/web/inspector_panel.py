@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from drake_screw.assembly.symmetries import object_symmetries
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.planning.touching import known_pair
 from drake_screw.robot import Workcell
 from drake_screw.runs.reader import RunReader
+from drake_screw.runs.summary import round_in_run
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import (
@@ -23,11 +25,11 @@ from drake_screw.visualization.attempt import (
 from drake_screw.visualization.inspector import Drawn
 from drake_screw.visualization.outlines import outlines
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
-from drake_screw.visualization.rounds import headline as round_headline
 from drake_screw.visualization.rounds import sample
 from drake_screw.visualization.scene import MOST_DOTS
 from drake_screw.visualization.screw_drawing import AXIS
-from drake_screw.web.charts import joint_strip, map_words, work_area_map
+from drake_screw.web.area_map import map_words, work_area_map
+from drake_screw.web.charts import joint_strip
 from drake_screw.web.selection import Selection, steps
 
 KEY = (
@@ -90,8 +92,14 @@ def panel_state(
         "steps": list(steps(reader, selection)),
         "attempts": attempts,
         "selected": selection.demonstration,
-        "headline": round_headline(event),
-        "map": work_area_map(event, regions, here=here, things=outlines(reader.setup.obstacles)),
+        "headline": round_in_run(event, reader.directory.record),
+        "map": work_area_map(
+            event,
+            regions,
+            here=here,
+            things=outlines(reader.setup.obstacles),
+            symmetries=object_symmetries(reader.setup.scenario),
+        ),
         "map_words": map_words(event, sample(event.evaluation, MOST_DOTS), regions),
     }
 

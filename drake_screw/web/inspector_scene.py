@@ -6,6 +6,7 @@ from typing import Any
 
 from pydrake.geometry import Meshcat
 
+from drake_screw.assembly.symmetries import object_symmetries
 from drake_screw.runs.pictures import make_scene
 from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.inspector import Drawn, Inspector
@@ -26,7 +27,9 @@ class InspectorScene:
         self.meshcat = meshcat
         self._reader = reader
         self._scene = make_scene(setup, meshcat)
-        self._inspector = Inspector(meshcat, setup.workcells, setup.objects)
+        self._inspector = Inspector(
+            meshcat, setup.workcells, setup.objects, object_symmetries(setup.scenario)
+        )
         self._round: int | None = None
 
     def show(self, selection: Selection, *, live: bool) -> dict[str, Any]:

@@ -16,13 +16,12 @@ from drake_screw.files import write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.planning.touching import count_collisions
 from drake_screw.runs.reader import RunReader
-from drake_screw.runs.summary import count_executions
+from drake_screw.runs.summary import count_executions, round_in_run
 from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES
-from drake_screw.visualization.rounds import details
-from drake_screw.visualization.rounds import headline as round_headline
+from drake_screw.visualization.rounds import bounds_over, details
 from drake_screw.web.arm_sketch import arm_sketch
 from drake_screw.web.charts import joint_chart
 from drake_screw.web.inspector_page import save_page
@@ -118,13 +117,14 @@ def _round(
     folder = reader.directory.round_folder(selection.round)
     return {
         "number": selection.round + 1,
-        "headline": round_headline(event),
+        "headline": round_in_run(event, reader.directory.record),
         "details": details(event, event.regions),
         "executions": str(count_executions(event.evaluation) or ""),
         "collisions": _collisions(reader, event),
         "heat_map": _picture(folder / "heat_map.png"),
         "K": event.regions.K,
         "regions": _regions(event),
+        "bounds": bounds_over(event.verdict, reader.setup.scenario.coverage.beta),
         "instance": _instance(reader, selection, linkages, page),
         "others": _others(reader, selection, linkages),
     }

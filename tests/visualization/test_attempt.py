@@ -39,9 +39,10 @@ from drake_screw.visualization.attempt import (
 )
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.linkage import Linkage
+from drake_screw.web.area_map import work_area_map
 from drake_screw.web.arm_sketch import arm_sketch
 from drake_screw.web.attempt_tables import attempt_record, attempts_csv, attempts_json
-from drake_screw.web.charts import joint_chart, joint_strip, work_area_map
+from drake_screw.web.charts import joint_chart, joint_strip
 from drake_screw.web.inspector_panel import attempt_entry, drawn_state
 from tests.visualization.conftest import BOWL
 from tests.visualization.test_scene import BAXTER, TABLE

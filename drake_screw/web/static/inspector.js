@@ -46,7 +46,8 @@ function pick(event) {
   const map = event.currentTarget;
   const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(
     map.getScreenCTM().inverse());
-  send({ at: [map.dataset.x - point.y / 1000, map.dataset.y - point.x / 1000] });
+  const [first, down, second, right] = map.dataset.at.split(",").map(Number);
+  send({ at: [first + point.y / down, second + point.x / right] });
 }
 
 function select_attempt(index, at) {
