@@ -24,6 +24,7 @@ from drake_screw.visualization.attempt import AHEAD, DONE, FAILED, Attempt
 from drake_screw.visualization.drawing import draw, draw_frames
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
+from drake_screw.visualization.reach_drawing import draw_reach
 from drake_screw.visualization.rim_marks import mark_angles
 from drake_screw.visualization.screw_drawing import draw_screw
 
@@ -147,6 +148,8 @@ class Inspector:
             touching = [name for pair in attempt.bodies for name in pair]
             place = f"{path}/ghost/touching"
             linkage.draw_bodies(self.meshcat, place, touching, positions, color, TOUCHING_OPACITY)
+        if attempt.unreachable is not None:
+            draw_reach(self.meshcat, f"{path}/ghost/reach", attempt.unreachable)
         if attempt.failed_joint is not None:
             moving |= self._draw_dial(f"{path}/dial", attempt, attempt.failed_joint, q)
             X_WJ = linkage.joint_frames(attempt.failed_joint, attempt.plan.q[-1:])[0]

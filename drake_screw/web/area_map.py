@@ -124,7 +124,7 @@ def work_area_map(
         shown.append(at)
         parts.append(_circle(at, HERE, "none", 2.5, "here"))
         parts += _rim(at, HERE, np.asarray(here)[drawn.object], frame, known, drawn)
-    left, top = np.min([[-46.0, -22.0], *(at - HERE - 8.0 for at in shown)], axis=0)
+    left, top = np.min([np.array([-46.0, -22.0]), *(at - HERE - 8.0 for at in shown)], axis=0)
     ends = frame.size[::-1] + np.array([18.0, 34.0])
     right, bottom = np.max([ends, *(at + HERE + 8.0 for at in shown)], axis=0)
     corner = ",".join(

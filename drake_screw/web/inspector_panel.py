@@ -29,7 +29,7 @@ from drake_screw.visualization.rounds import sample
 from drake_screw.visualization.scene import MOST_DOTS
 from drake_screw.visualization.screw_drawing import AXIS
 from drake_screw.web.area_map import map_words, work_area_map
-from drake_screw.web.charts import joint_strip
+from drake_screw.web.charts import joint_curves, reach_curves, strip
 from drake_screw.web.selection import Selection, steps
 
 KEY = (
@@ -170,9 +170,24 @@ def drawn_state(drawn: Drawn) -> dict[str, Any]:
                 "unit": arm.units[j],
                 "lower": None if arm.endless[j] else float(arm.lower[j]),
                 "upper": None if arm.endless[j] else float(arm.upper[j]),
-                "strip": joint_strip(attempt, j, samples),
+                "strip": strip(attempt, curve, samples),
             }
-            for j, name in enumerate(arm.joint_names)
+            for j, (name, curve) in enumerate(
+                zip(arm.joint_names, joint_curves(attempt), strict=True)
+            )
+        ],
+        "reach": [
+            {
+                "name": curve.name,
+                "unit": curve.unit,
+                "strip": strip(attempt, curve, samples),
+                "failed": curve.failed,
+                "bound": curve.bound,
+                "values": [
+                    None if np.isnan(v) else float(f"{v:.4g}") for v in curve.values[samples]
+                ],
+            }
+            for curve in reach_curves(attempt)
         ],
         "q": np.round(attempt.plan.q[samples], 5).tolist(),
         "at": [
@@ -211,6 +226,11 @@ def where(area: WorkArea, coordinates: Array) -> str:
     return ", ".join(
         f"{o.name} at {area.words(i, coordinates)}" for i, o in enumerate(area.objects)
     )
+
+
+def _number(value: float) -> float | None:
+    """To four digits; None where there is none."""
+    return None if np.isnan(value) else float(f"{value:.4g}")
 
 
 def _columns(X: Array) -> list[list[float]]:

@@ -23,7 +23,7 @@ from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES
 from drake_screw.visualization.rounds import bounds_over, details
 from drake_screw.web.arm_sketch import arm_sketch
-from drake_screw.web.charts import joint_chart
+from drake_screw.web.charts import joint_chart, reach_chart
 from drake_screw.web.inspector_page import save_page
 from drake_screw.web.inspector_panel import where
 from drake_screw.web.selection import Selection, select
@@ -182,6 +182,7 @@ def _instance(
         ],
         "best": best.number + 1,
         "chart": joint_chart(best),
+        "reach": reach_chart(best),
         "sketch": _sketch(best, linkages, setup),
     }
 

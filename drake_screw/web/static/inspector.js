@@ -85,6 +85,14 @@ function select_attempt(index, at) {
     row.append(make("td", joint.name), strip, make("td"), make("td"));
     return row;
   }));
+  element("reach-part").hidden = attempt.reach.length === 0;
+  document.querySelector("#reach tbody").replaceChildren(...attempt.reach.map((curve) => {
+    const row = make("tr"), strip = make("td", "", "strip");
+    strip.innerHTML = curve.strip;
+    row.append(make("td", curve.name), strip, make("td"), make("td", curve.bound));
+    row.classList.toggle("limit", curve.failed);
+    return row;
+  }));
   element("slider").max = attempt.at.length - 1;
   show_sample(at === undefined ? attempt.start : Math.min(at, attempt.at.length - 1));
 }
@@ -116,6 +124,11 @@ function show_sample(index) {
   document.querySelectorAll("#segments li").forEach((item, i) =>
     item.setAttribute("aria-current", i === segment));
   const x = 100 * (segment + s) / total;
+  document.querySelectorAll("#reach tbody tr").forEach((row, i) => {
+    const { values, unit } = attempt.reach[i], value = values[sample];
+    row.cells[2].textContent = value === null ? "" : `${value.toPrecision(3)} ${unit}`;
+    point_at(row, x);
+  });
   document.querySelectorAll("#joints tbody tr").forEach((row, j) => {
     const joint = attempt.joints[j], q = attempt.q[sample][j];
     const endless = joint.lower === null;  // a joint without limits
@@ -124,10 +137,14 @@ function show_sample(index) {
     row.cells[3].textContent = endless ? "no limit" : `${margin.toFixed(3)} ${joint.unit}`;
     row.classList.toggle("limit", margin < 1e-4);
     row.classList.toggle("near", margin >= 1e-4 && margin < 0.1);
-    const cursor = row.querySelector(".cursor");
-    cursor.setAttribute("x1", x);
-    cursor.setAttribute("x2", x);
+    point_at(row, x);
   });
+}
+
+function point_at(row, x) {
+  const cursor = row.querySelector(".cursor");
+  cursor.setAttribute("x1", x);
+  cursor.setAttribute("x2", x);
 }
 
 function stop() {
