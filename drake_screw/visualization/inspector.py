@@ -4,7 +4,8 @@ Under ``/attempts/01`` and so on, one for each demonstration drawn: ``segments/0
 effector's path), ``axes/01``, ... (the screws), ``frames`` (the guiding poses), ``turned`` (how
 symmetric objects are turned), ``ghost`` (the arm where the plan failed, and under
 ``ghost/touching`` the bodies that touch there) and ``dial`` (the range of the joint at its limit,
-with a needle). Under ``/instance`` the objects. The robot itself is the one of `Scene`, at
+with a needle). Under ``/copies/01`` and so on the arm once more, translucent, to be shown beside
+another attempt. Under ``/instance`` the objects. The robot itself is the one of `Scene`, at
 ``/workcell``.
 """
 
@@ -29,6 +30,7 @@ from drake_screw.visualization.rim_marks import mark_angles
 from drake_screw.visualization.screw_drawing import draw_screw
 
 BOWL = "#f4c95d"
+COPY, COPY_OPACITY = "#0072b2", 0.45
 GHOST_OPACITY, AHEAD_OPACITY, TOUCHING_OPACITY = 0.22, 0.35, 0.6
 SAMPLES = 120
 DIAL = (0.110, 0.145)
@@ -45,12 +47,14 @@ class Drawn:
         path: where.
         samples: (m,) the points of the plan that the arm can be shown at.
         moving: paths of what moves along the plan, with X_WL (m, 4, 4) of each.
+        copied: links of ``/workcell`` that are drawn once more, under the same names.
     """
 
     attempt: Attempt
     path: str
     samples: Array
     moving: dict[str, Array]
+    copied: tuple[str, ...] = ()
 
 
 class Inspector:
@@ -80,6 +84,7 @@ class Inspector:
     def clear(self) -> None:
         """Remove all attempts and the instance."""
         self.meshcat.Delete("/attempts")
+        self.meshcat.Delete("/copies")
         self.meshcat.Delete("/instance")
 
     def show_instance(self, X_WO: Array) -> None:
@@ -124,8 +129,13 @@ class Inspector:
         names = [linkage.arm.joint_names for linkage in self._linkages]
         return names.index(arm.joint_names)
 
-    def draw(self, attempt: Attempt) -> Drawn:
-        """Draw an attempt in place of an earlier one with the same demonstration."""
+    def draw(self, attempt: Attempt, *, copy: bool = False) -> Drawn:
+        """Draw an attempt in place of an earlier one with the same demonstration.
+
+        Args:
+            attempt: what to draw.
+            copy: draw the arm once more, hidden, to be shown beside another attempt.
+        """
         path = f"/attempts/{attempt.number + 1:02d}"
         self.meshcat.Delete(path)
         for segment, status in enumerate(attempt.status):
@@ -155,7 +165,11 @@ class Inspector:
             X_WJ = linkage.joint_frames(attempt.failed_joint, attempt.plan.q[-1:])[0]
             ring = meshes.ring(RING, 0.012).moved(X_WJ)
             draw(self.meshcat, f"{path}/ghost/joint", ring, STATUS_COLORS[FAILED])
-        return Drawn(attempt, path, samples, moving)
+        if copy:
+            place = f"/copies/{attempt.number + 1:02d}"
+            linkage.draw_copy(self.meshcat, place, q[0], COPY, COPY_OPACITY)
+            self.meshcat.SetProperty(place, "visible", False)
+        return Drawn(attempt, path, samples, moving, linkage.names if copy else ())
 
     def _draw_turns(self, path: str, attempt: Attempt) -> None:
         """Around every symmetric object an arc from where it stood to where it is turned to."""

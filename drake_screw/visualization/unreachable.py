@@ -70,7 +70,7 @@ class Unreachable:
     @property
     def stretched(self) -> bool:
         """Whether the arm was stretched out where the plan ended."""
-        return self.wrist is not None and self.distance[-1] > STRETCHED * self.wrist.most
+        return self.wrist is not None and bool(self.distance[-1] > STRETCHED * self.wrist.most)
 
     @property
     def _missing(self) -> str:

@@ -82,7 +82,7 @@ def reach_curves(attempt: Attempt) -> list[Curve]:
             ("1", "0.001"),
             (end,),
             failed=bool(values[-1] < 1.1 * END_OF_REACH),
-            bound=f"of {END_OF_REACH:g}",
+            bound=f"limit {END_OF_REACH:g}",
         )
         for name, values in (("along the screw", found.gain), ("singular value", found.singular))
     ]
@@ -98,7 +98,7 @@ def reach_curves(attempt: Attempt) -> list[Curve]:
                 (found.wrist.least / top, found.wrist.most / top),
                 failed=found.out_of_reach or found.stretched,
                 asked=found.needed / top,
-                bound=f"of {found.wrist.most:.3f}",
+                bound=f"limit {found.wrist.most:.3f}",
             )
         )
     return curves

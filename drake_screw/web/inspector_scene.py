@@ -35,7 +35,8 @@ class InspectorScene:
     def show(self, selection: Selection, *, live: bool) -> dict[str, Any]:
         """Draw a selection; returns the panel's state.
 
-        A live page gets the selected attempt only, as planning takes its time; a saved page all.
+        A live page gets the attempts that are looked at, as planning takes its time; a saved page
+        all.
         """
         if self._round != selection.round:
             self._show_round(selection)
@@ -63,10 +64,12 @@ class InspectorScene:
         event = self._reader.event(selection.round)
         here = event.evaluation.coordinates[selection.instance]
         self._inspector.show_instance(self._reader.setup.area.X_WO(here))
+        count = len(event.demonstrations)
+        numbers = [d for d in range(count) if d in selection.drawn or not selected_only]
         return {
             number: self._inspector.draw(
-                self._reader.attempt(selection.round, selection.instance, number)
+                self._reader.attempt(selection.round, selection.instance, number),
+                copy=len(numbers) > 1,
             )
-            for number in range(len(event.demonstrations))
-            if number == selection.demonstration or not selected_only
+            for number in numbers
         }

@@ -99,5 +99,5 @@ def test_it_is_told_drawn_and_written(far, workcell, meshcat) -> None:
     for part in ("shoulder", "wrist", "line", "sphere", "asked", "gap"):
         assert meshcat.HasPath(f"/attempts/01/ghost/reach/{part}"), part
     state = drawn_state(shown)
-    assert [row["bound"] for row in state["reach"]] == ["of 0.01", "of 0.01", "of 0.814"]
+    assert [row["bound"] for row in state["reach"]] == ["limit 0.01", "limit 0.01", "limit 0.814"]
     assert len(state["reach"][0]["values"]) == len(state["at"])
