@@ -95,7 +95,7 @@ def draw_heat_map(
     if event.suggestion is not None:
         x, y = drawn.place(event.suggestion.coordinates)
         look = _marker("*", ACCENT, 19.0 if text else 11.0, INK)
-        ax.plot(y, x, **look, zorder=8, gid="suggestion")
+        ax.plot(y, x, **look, clip_on=False, zorder=8, gid="suggestion")
     return shown
 
 

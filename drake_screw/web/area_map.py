@@ -138,7 +138,9 @@ def work_area_map(
 
 def map_words(event: Round, shown: Sample, regions: Regions) -> str:
     """What the dots of `work_area_map` are, and how many of the instances `shown` in 3-D."""
-    words = f"dots: what fails of {sample(event.evaluation, MAP_DOTS).statement}"
+    drawn_of = sample(event.evaluation, MAP_DOTS)
+    some = drawn_of.count(Cause.SUCCESS) < len(drawn_of.cause)
+    words = f"{'dots: what fails of' if some else 'nothing fails of'} {drawn_of.statement}"
     drawn = cells(regions, event.verdict.estimates)
     if drawn.others:
         how = "the worst region" if drawn.stack > 1 else "the mean"

@@ -27,6 +27,12 @@ def test_words_of_a_run_are_escaped(finished_run, tmp_path) -> None:
     assert "<script" not in page
     assert f"<td>{remark}</td>" in unescape(page)
     assert '<svg class="chart"' in page
+    assert '<th class="number">round 1</th>' in page
+    before, event = (open_run(copy).reader.event(round) for round in (0, 1))
+    worst = event.verdict.region
+    row = f'{event.verdict.upper[worst]:.4f}</td><td class="number">'
+    assert row + f"{before.verdict.estimates[worst]:.4f}</td>" in page
+    assert "round 1 → 2: of the work area" in page
     assert '<figure class="sketch">' in page
 
 
