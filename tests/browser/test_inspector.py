@@ -287,6 +287,11 @@ def test_the_live_page(browser, finished_run, reader) -> None:
         browser.until(lambda: browser.text("#headline").startswith("Demonstration 1 "))
         browser.until(lambda: (browser.node("attempts/01/segments/01") or {}).get("seen"))
         assert browser.node("attempts/02") is None
+        browser.select("#against", 1)
+        browser.until(lambda: (browser.node("copies/02/baxter/left_hand") or {}).get("seen"))
+        assert not browser.node("attempts/02")["seen"]
+        browser.select("#against", "")
+        browser.until(lambda: browser.node("copies/02") is None)
         here = browser.text("#where-it-is")
         browser.ask("arguments[0].scrollTop = 0", browser.driver.find_element("id", "panel"))
         browser.click("#map svg")
