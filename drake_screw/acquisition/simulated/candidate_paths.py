@@ -77,8 +77,8 @@ def follow_key_poses(
         X_WA, X_WB = X_WE if led else X_WK[:, segment - 1], X_WK[:, segment]
         size = rotation_angle(X_WA, X_WB) + translation_distance(X_WA, X_WB) / METERS_PER_RADIAN
         steps = max(4, int(np.ceil(size.max() / STEP)))
-        for i in range(1, steps + 1):
-            target = sclerp(X_WA, X_WB, np.full(count, i / steps))
+        targets = sclerp(X_WA, X_WB, np.arange(1, steps + 1)[:, None] / steps)
+        for target in targets:
             motion = _motion(*_asked(chain.jacobian(q), target, X_WE, free_axis), q, stops)
             near_singular = np.linalg.norm(motion, axis=-1) > MAX_JOINT_STEP
             arrived &= ~near_singular
