@@ -13,7 +13,7 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core.core_schema import ModelSchema
 
-from drake_screw.scenario.block import Keys
+from drake_screw.scenario.block import Block, Keys
 from drake_screw.scenario.meanings import meanings
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.values import Interval
@@ -145,7 +145,8 @@ class _Generator(GenerateJsonSchema):
         made = super().model_schema(schema)
         made.pop("title", None)
         made.pop("description", None)
-        for name, meaning in meanings(schema["cls"]).items():
+        block: type[Block] = schema["cls"]
+        for name, meaning in meanings(block).items():
             made["properties"][name]["description"] = meaning
         return made
 
