@@ -112,12 +112,17 @@ class ScrewChain:
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Spatial Jacobian about W's origin; q (..., n) to (..., 6, n), twists as [w; v]."""
+        return self.pose_and_jacobian(q)[1]
+
+    def pose_and_jacobian(self, q: ArrayLike) -> tuple[Array, Array]:
+        """Both of the same q (..., n), for which the joints' exponentials are needed but once."""
         each = self._exponentials(q)
-        before = np.empty_like(each)
-        before[..., :1, :, :] = np.eye(4)
-        for i in range(1, self.n):
-            before[..., i, :, :] = before[..., i - 1, :, :] @ each[..., i - 1, :, :]
-        return np.swapaxes((adjoint(before) @ self.screws[..., None])[..., 0], -1, -2)
+        before = np.empty((*each.shape[:-3], self.n + 1, 4, 4))
+        before[..., 0, :, :] = np.eye(4)
+        for i in range(self.n):
+            before[..., i + 1, :, :] = before[..., i, :, :] @ each[..., i, :, :]
+        J = (adjoint(before[..., :-1, :, :]) @ self.screws[..., None])[..., 0]
+        return before[..., -1, :, :] @ self.home, np.swapaxes(J, -1, -2)
 
     def _exponentials(self, q: ArrayLike) -> Array:
         """exp(S_i q_i) of every joint; q (..., n) to (..., n, 4, 4)."""

@@ -112,5 +112,5 @@ def with_hand_noise(chain: ScrewChain, q: Array, rng: np.random.Generator) -> Ar
         noise /= noise.std(axis=0)
         V_WE += noise * np.repeat([part.rotation, part.position], 3)
     V_WE *= minimum_jerk(np.clip(np.arange(len(q)) / RATE, 0.0, 1.0))[:, None]
-    V = shift(V_WE, -chain.pose(q)[:, :3, 3])
-    return q + damped_joint_motion(chain.jacobian(q), V)
+    X_WE, J = chain.pose_and_jacobian(q)
+    return q + damped_joint_motion(J, shift(V_WE, -X_WE[:, :3, 3]))
