@@ -28,6 +28,7 @@ from drake_screw.commands import (
     study,
 )
 from drake_screw.commands.any_console import any_console
+from drake_screw.commands.collector import collect_seldom
 from drake_screw.commands.instance_option import InstanceCommand
 from drake_screw.commands.log import set_up_logging
 from drake_screw.commands.options import VerboseOption
@@ -99,6 +100,7 @@ def _versions(verbose: bool) -> list[str]:
 
 def main() -> None:
     """Run the command; bad input prints one message and ends with exit code 2."""
+    collect_seldom()
     any_console()
     set_up_logging()
     began = time.perf_counter()

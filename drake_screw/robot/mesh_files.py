@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from drake_screw.errors import ModelError
 from drake_screw.files import cache_folder, write_text
@@ -52,6 +51,8 @@ def hull_file(file: Path) -> Path:
     """
     kept = _kept(file, "hull")
     if not kept.is_file():
+        from scipy.spatial import ConvexHull, QhullError  # take long to import
+
         points = np.concatenate([part.vertices for part in _parts(file)])
         try:
             hull = ConvexHull(points)

@@ -43,7 +43,6 @@ class Block(BaseModel):
         extra="forbid",
         strict=True,
         allow_inf_nan=False,
-        use_attribute_docstrings=True,
     )
 
     def broken_rules(self) -> Iterator[Problem]:
