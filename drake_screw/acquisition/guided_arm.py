@@ -89,7 +89,9 @@ class GuidedArm:
         """Joint velocities (n,) that come near V_WE (6,) in any direction, and near the middles."""
         low = np.maximum(-self._speed, (self._lower - self.q) / self.period)
         high = np.minimum(self._speed, (self._upper - self.q) / self.period)
-        share = max(np.linalg.norm(V_WE[:3]) / ANGULAR_SPEED, np.linalg.norm(V_WE[3:]) / LINEAR_SPEED)
+        share = max(
+            np.linalg.norm(V_WE[:3]) / ANGULAR_SPEED, np.linalg.norm(V_WE[3:]) / LINEAR_SPEED
+        )
         to_middle = FREEING * share * (self.arm.middle - self.q)
         A = np.vstack([J_WE, FREELY * np.eye(self.arm.n)])
         b = np.concatenate([V_WE, FREELY * to_middle])

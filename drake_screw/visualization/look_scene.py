@@ -58,12 +58,12 @@ def draw_look(meshcat: Meshcat, look: Look, objects: Sequence[ObjectConfig]) -> 
     meshcat.SetCameraPose(target + np.array(VIEW), target)
 
 
-def draw_path(meshcat: Meshcat, look: Look) -> None:
+def draw_path(meshcat: Meshcat, look: Look, color: str = QUIET) -> None:
     """Draw the end effector's path alone, in place of the recording before."""
     clear_path(meshcat)
     path = look.X_WE[thin(look.X_WE, 0.004, np.inf), :3, 3]
     if len(path) > 1:
-        draw(meshcat, "/recording/path", meshes.tube(path, 0.006), QUIET)
+        draw(meshcat, "/recording/path", meshes.tube(path, 0.006), color)
 
 
 def clear_path(meshcat: Meshcat) -> None:

@@ -160,7 +160,9 @@ class LedArm:
         """Want the end effector where it is, once it is held back."""
         self._steps += 1
         here, before, (moved, turned) = self.X_WE, self._X_WE_before, CREEP
-        creeps = translation_distance(here, before) < moved and rotation_angle(here, before) < turned
+        creeps = (
+            translation_distance(here, before) < moved and rotation_angle(here, before) < turned
+        )
         if not self._guided.stuck or not creeps:
             self._X_WE_before, self._steps = here, 0
         elif self._steps * PERIOD >= PATIENCE:

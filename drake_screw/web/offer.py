@@ -94,9 +94,7 @@ class Offer:
         for near in self.look.deviations:
             share = np.maximum(near.position / position, near.rotation / rotation)
             y = _HEIGHT - _TOLERANCE * np.minimum(share, _HEIGHT / _TOLERANCE)
-            for run in np.split(
-                np.arange(len(y)), np.flatnonzero(np.diff(near.samples) > 1) + 1
-            ):
+            for run in np.split(np.arange(len(y)), np.flatnonzero(np.diff(near.samples) > 1) + 1):
                 points = " ".join(f"{x[near.samples[i]]:.2f},{y[i]:.2f}" for i in run)
                 color = object_color(near.object)
                 parts.append(f'<polyline points="{points}" stroke="{color}" class="deviation"/>')

@@ -18,7 +18,7 @@ from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.visualization.look_scene import clear_path
 from drake_screw.visualization.meshcat_page import render
-from drake_screw.visualization.palette import ACCENT, QUIET
+from drake_screw.visualization.palette import ACCENT, INK
 from drake_screw.web.inbox import Inbox
 from drake_screw.web.inspector_panel import KEY
 from drake_screw.web.led_arm import PERIOD, TAKEN_BACK
@@ -86,7 +86,7 @@ class TeachingPage:
         setup, meshcat = self._setup, page_meshcat(self._host)
         self._scene = make_scene(setup, meshcat)
         self._inspector = Inspector(meshcat, setup.workcells, setup.objects)
-        key = ((ACCENT, "demonstrate here"), (QUIET, "the hand's path as recorded"), *KEY)
+        key = ((ACCENT, "demonstrate here"), (INK, "the hand's path as recorded"), *KEY)
         look: dict[str, Any] = {"accent": ACCENT, "axes": AXES, "back": f"{TAKEN_BACK:g}"}
         panel = render("drake_screw.web", "teaching.html.j2", key=key, **look)
         self._title = f"{setup.scenario.name}: teach"

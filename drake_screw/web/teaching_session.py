@@ -20,6 +20,7 @@ from drake_screw.screws.endless import drawn_range
 from drake_screw.typing import Array
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.look_scene import clear_path, draw_path
+from drake_screw.visualization.palette import INK
 from drake_screw.web.led_arm import PERIOD, LedArm
 from drake_screw.web.offer import Offer, as_state, offer
 
@@ -245,7 +246,7 @@ class TeachingSession:
         found = offer(self._setup, self._X_WO, self._number, part, start if part.cut else 0.0)
         self._offer, self._message = found, found.words
         self._inspector.draw(found.tried)
-        draw_path(self._inspector.meshcat, found.look)
+        draw_path(self._inspector.meshcat, found.look, INK)
 
     def _accept(self) -> None:
         assert self._offer is not None
