@@ -14,7 +14,7 @@ _WIDTH = '<meta name="viewport" content="width=device-width, initial-scale=1">'
 
 
 def add_to_page(page: str, html: Markup, *, title: str, head: Markup = _NOTHING) -> str:
-    """Meshcat's page with a title of its own and HTML at the end of its body, as wide as the screen.
+    """Meshcat's page as wide as the screen, with a title and HTML at the end of its body.
 
     Args:
         page: as Meshcat serves it, or as `Meshcat.StaticHtml` gives it.
