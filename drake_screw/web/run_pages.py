@@ -98,9 +98,7 @@ class RunPages:
             teach = self._teaching_page(setup).open()
         if self.watched:
             kept = None if folder is None else folder.resolve() / SCENE
-            self.live = LivePage(
-                setup, host=self._host, port=self._port, teach=teach, kept=kept
-            )
+            self.live = LivePage(setup, host=self._host, port=self._port, teach=teach, kept=kept)
             self._announce(f"watch the run at {self.live.url}")
         if teach:
             self._announce(f"give demonstrations at {teach}")
