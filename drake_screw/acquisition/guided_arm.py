@@ -8,6 +8,7 @@ from pydrake.multibody.inverse_kinematics import (
     DifferentialInverseKinematicsParameters,
     DoDifferentialInverseKinematics,
 )
+from scipy.optimize import lsq_linear
 
 from drake_screw.robot import Arm
 from drake_screw.screws import inverse, log, shift
@@ -19,13 +20,19 @@ LINEAR_SPEED, ANGULAR_SPEED = 0.25, 1.2
 """m/s and rad/s, the end effector's speed on the way to where it is guided."""
 SPEED_FRACTION = 0.5
 """Of the joints' velocity limits."""
+FREEING = 0.5
+"""1/s. How fast the joints of an arm that is stuck at full speed go to their middles."""
+FREELY = 0.1
+"""How much that counts, beside the end effector's velocity."""
 
 
 class GuidedArm:
     """An arm that follows where it is guided, and stays within its limits.
 
     Differential inverse kinematics by Drake's quadratic program: the end effector's velocity as
-    asked, as far as joint limits and joint speeds let it.
+    asked, as far as joint limits and joint speeds let it. Where these let it go nowhere, the arm
+    being stretched out say, a velocity that is as near as can be, by bounded least squares, with
+    joints drawn to the middles of their ranges, so that it comes free again.
 
     Args:
         arm: to guide.
@@ -68,13 +75,27 @@ class GuidedArm:
         )
         v = result.joint_velocities
         self.stuck = v is None or np.linalg.norm(J_WE @ v - V_WE) > 0.5 * np.linalg.norm(V_WE)
-        return v is not None and self._move(np.asarray(v) * self.period)
+        if self.stuck:
+            v = self._nearest_velocities(V_WE, J_WE)
+        return self._move(np.asarray(v) * self.period)
 
     def guide_joints(self, q: ArrayLike) -> bool:
         """One step of all joints towards a configuration (n,); returns whether the arm moved."""
         most = self._speed * self.period
         self.stuck = False
         return self._move(np.clip(np.asarray(q, dtype=float) - self.q, -most, most))
+
+    def _nearest_velocities(self, V_WE: Array, J_WE: Array) -> Array:
+        """Joint velocities (n,) that come near V_WE (6,) in any direction, and near the middles."""
+        low = np.maximum(-self._speed, (self._lower - self.q) / self.period)
+        high = np.minimum(self._speed, (self._upper - self.q) / self.period)
+        share = max(
+            np.linalg.norm(V_WE[:3]) / ANGULAR_SPEED, np.linalg.norm(V_WE[3:]) / LINEAR_SPEED
+        )
+        to_middle = FREEING * share * (self.arm.middle - self.q)
+        A = np.vstack([J_WE, FREELY * np.eye(self.arm.n)])
+        b = np.concatenate([V_WE, FREELY * to_middle])
+        return np.asarray(lsq_linear(A, b, bounds=(low, high)).x)
 
     def _move(self, step: Array) -> bool:
         moved = np.clip(self.q + step, self._lower, self._upper)

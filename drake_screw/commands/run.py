@@ -88,7 +88,7 @@ def run(
             if resume is None
             else open_run(resume, **pages.parts)
         )
-        pages.open(job.setup)
+        pages.open(job.setup, job.directory.path)
         if loaded.teacher.kind == "simulated" and not quiet:
             for line in job.setup.assumptions:
                 out.say(f"note: {line}")

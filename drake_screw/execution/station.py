@@ -14,6 +14,7 @@ from pydrake.geometry import (
     MeshcatVisualizer,
     MeshcatVisualizerParams,
     SceneGraph,
+    Shape,
 )
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
@@ -158,6 +159,7 @@ def build_station(
     free_objects: bool = False,
     planner: ScrewPlanner | None = None,
     meshcat: Meshcat | None = None,
+    looks: Sequence[Shape] | None = None,
     time_step: float = 2.5e-3,
 ) -> Station:
     """Build the diagram that executes plans.
@@ -171,6 +173,7 @@ def build_station(
         planner: plans inside the diagram, for where the plant has the objects. Its plans go over
             into one another, which takes the executor that follows screws.
         meshcat: to draw the simulation in.
+        looks: of the objects there, each in its own frame; cylinders if None.
         time_step: s, of the plant.
 
     Raises:
@@ -186,7 +189,7 @@ def build_station(
     plant, scene_graph = AddMultibodyPlant(config, builder)
     parser = Parser(plant)
     added = add_robot(parser, robot)
-    _, bodies = add_surroundings(plant, table, objects, obstacles)
+    _, bodies = add_surroundings(plant, table, objects, obstacles, looks)
     motorise(plant, added.models)
     for model in added.models:
         plant.set_gravity_enabled(model, False)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from pydrake.geometry import Box, Cylinder, SceneGraph
+from pydrake.geometry import Box, Cylinder, SceneGraph, Shape
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
@@ -221,8 +221,11 @@ def add_surroundings(
     table: TableConfig | None,
     objects: Sequence[ObjectConfig] = (),
     obstacles: Sequence[ObstacleConfig] = (),
+    looks: Sequence[Shape] | None = None,
 ) -> tuple[tuple[RigidBody, ...], tuple[RigidBody, ...]]:
     """Add what stands around a robot; returns the bodies of the obstacles and of the objects.
+
+    Objects look as `looks` say, each in its own frame, or like their collision shapes.
 
     Raises:
         ModelError: two things have one name, or a mesh cannot be read.
@@ -232,7 +235,9 @@ def add_surroundings(
     check_apart(plant, "an obstacle", [item.name for item in obstacles])
     fixed = tuple(add_obstacle(plant, item) for item in obstacles)
     check_apart(plant, "an object", [item.name for item in objects])
-    return fixed, tuple(add_object(plant, item) for item in objects)
+    seen = [None] * len(objects) if looks is None else looks
+    pairs = zip(objects, seen, strict=True)
+    return fixed, tuple(add_object(plant, item, look) for item, look in pairs)
 
 
 def add_table(plant: MultibodyPlant, table: TableConfig) -> None:
@@ -244,12 +249,12 @@ def add_table(plant: MultibodyPlant, table: TableConfig) -> None:
     register(plant, body, box, RigidTransform(), WOOD)
 
 
-def add_object(plant: MultibodyPlant, item: ObjectConfig) -> RigidBody:
+def add_object(plant: MultibodyPlant, item: ObjectConfig, look: Shape | None = None) -> RigidBody:
     """Add an object as a free body with a visual and a collision shape."""
     up = [0.0, 0.0, 1.0]
     about_middle = SpatialInertia.SolidCylinderWithMass(item.mass, item.radius, item.height, up)
     inertia = about_middle.Shift([0.0, 0.0, -item.height / 2.0])
     body = plant.AddRigidBody(item.name, plant.AddModelInstance(item.name), inertia)
     X_OC = RigidTransform([0.0, 0.0, item.height / 2.0])
-    register(plant, body, Cylinder(item.radius, item.height), X_OC, CLAY, item.friction)
+    register(plant, body, Cylinder(item.radius, item.height), X_OC, CLAY, item.friction, look)
     return body

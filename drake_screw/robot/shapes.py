@@ -139,14 +139,16 @@ def register(
     X_BG: RigidTransform,
     color: Array,
     friction: float = 0.6,
+    look: Shape | None = None,
 ) -> None:
-    """Give a body a look and a collision shape, which are the same.
+    """Give a body a look and a collision shape, which are the same unless there is a `look`.
 
     A plant without a scene graph, which is for kinematics alone, gets neither.
     """
     if not plant.geometry_source_is_registered():
         return
-    plant.RegisterVisualGeometry(body, X_BG, shape, f"{body.name()}_look", color)
+    X_BL, seen = (X_BG, shape) if look is None else (RigidTransform(), look)
+    plant.RegisterVisualGeometry(body, X_BL, seen, f"{body.name()}_look", color)
     plant.RegisterCollisionGeometry(
         body, X_BG, shape, f"{body.name()}_shape", CoulombFriction(friction, friction)
     )

@@ -112,8 +112,9 @@ class RunDirectory:
         folder = self.path / DEMONSTRATIONS / f"{number + 1:02d}_{recording.name}"
 
         def fill(temporary: Path) -> None:
-            if recording.source is not None and is_recording(recording.source):
-                shutil.copytree(recording.source, temporary, dirs_exist_ok=True)
+            source = None if recording.cut else recording.source
+            if source is not None and is_recording(source):
+                shutil.copytree(source, temporary, dirs_exist_ok=True)
             else:
                 write_recording(recording, temporary, held)
 

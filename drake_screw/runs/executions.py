@@ -22,7 +22,6 @@ from drake_screw.execution import (
     Station,
     TimeLimits,
     build_station,
-    recording_html,
 )
 from drake_screw.execution.motors import assumed_motors
 from drake_screw.execution.parallel import Job, execute_all
@@ -30,18 +29,18 @@ from drake_screw.execution.simulate import Execution
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Outcomes, concatenate
+from drake_screw.runs.executions_page import executions_page
 from drake_screw.runs.run import open_run
 from drake_screw.sharing import Workers
 from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
-from drake_screw.visualization.lifetime import scratch
+from drake_screw.visualization.object_looks import bowl_look
 
 ROUND = 1_000_000
 """The round whose instances are executed. No run gets that far, so they are fresh."""
 
 TRIES = 20  # times as many instances are drawn in a region at most as are wanted
-SHOWN = 4  # executions in the recording
 
 
 @dataclass(frozen=True)
@@ -132,26 +131,9 @@ def execute(
     def fill(folder: Path) -> None:
         (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
         (folder / "summary.txt").write_text(f"{found}\n")
-        robots = {one.name: one.robot for one in setup.arms}
-        shown = [
-            (
-                trial.execution,
-                setup.area.X_WO(trial.coordinates),
-                robots.get(trial.arm, setup.robot),
-            )
-            for trial in _chosen(trials)
-            if trial.execution is not None
-        ]
-        if shown:
-            with scratch():
-                page = recording_html(
-                    shown,
-                    table=setup.table,
-                    objects=setup.objects,
-                    obstacles=setup.obstacles,
-                    free_objects=free_objects,
-                )
-            (folder / "executions.html").write_text(page)
+        page = executions_page(setup, trials, free_objects=free_objects)
+        if page is not None:
+            (folder / "executions.html").write_text(page, encoding="utf-8")
 
     parent = opened.directory.path / "executions"
     remedy = "Executions are written beside the run; make its folder writable."
@@ -234,6 +216,7 @@ def planning_station(
         obstacles=setup.obstacles,
         planner=planner,
         meshcat=meshcat,
+        looks=None if meshcat is None else [bowl_look(item) for item in setup.objects],
     )
 
 
@@ -266,16 +249,3 @@ def _fresh_instances(
     coordinates = np.concatenate(places)
     order = np.argsort(regions.index(coordinates), kind="stable")
     return coordinates[order], concatenate(outcomes)[order]
-
-
-def _chosen(trials: Sequence[Trial]) -> list[Trial]:
-    """What is worth looking at: what went wrong, the worst tracked, then some from all over."""
-    executed = [trial for trial in trials if trial.report is not None]
-
-    def badness(trial: Trial) -> tuple[bool, float]:
-        assert trial.report is not None
-        return not trial.report.flawless, trial.report.tracking.position
-
-    worst = sorted(executed, key=badness, reverse=True)[: SHOWN // 2]
-    rest = [trial for trial in executed if trial not in worst]
-    return worst + rest[:: max(1, -(-len(rest) // (SHOWN - len(worst))))]

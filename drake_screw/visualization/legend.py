@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
+from markupsafe import Markup
+
 from drake_screw.tasks import Regions
 from drake_screw.visualization.meshcat_page import add_to_page, render
 from drake_screw.visualization.palette import (
@@ -60,4 +62,9 @@ def with_legend(page: str, slides: Sequence[Slide], shown: Sample, *, scenario: 
         ],
         statement=shown.statement,
     )
-    return add_to_page(page, legend, title=title)
+    return add_to_page(page, legend + upright_numerals(), title=title)
+
+
+def upright_numerals() -> Markup:
+    """A script for a page that shows a `Scene`: the numerals on its table stand upright."""
+    return render("drake_screw.visualization", "numerals.html.j2")

@@ -39,10 +39,7 @@ def draw_look(meshcat: Meshcat, look: Look, objects: Sequence[ObjectConfig]) -> 
         look: at the recording.
         objects: how they look, in their order.
     """
-    meshcat.Delete("/recording")
-    path = look.X_WE[thin(look.X_WE, 0.004, np.inf), :3, 3]
-    if len(path) > 1:
-        draw(meshcat, "/recording/path", meshes.tube(path, 0.006), QUIET)
+    draw_path(meshcat, look)
     for i, (item, X) in enumerate(zip(objects, look.X_WO, strict=True)):
         bowl = meshes.bowl(item.radius, item.height).moved(X)
         draw(meshcat, f"/recording/objects/{item.name}", bowl, BOWL)
@@ -59,6 +56,19 @@ def draw_look(meshcat: Meshcat, look: Look, objects: Sequence[ObjectConfig]) -> 
         draw_screw(meshcat, f"/recording/axes/{number:02d}", segment.X_WA, segment.X_WB, color)
     target = 0.5 * (look.X_WE[:, :3, 3].mean(axis=0) + look.X_WO[:, :3, 3].mean(axis=0))
     meshcat.SetCameraPose(target + np.array(VIEW), target)
+
+
+def draw_path(meshcat: Meshcat, look: Look, color: str = QUIET) -> None:
+    """Draw the end effector's path alone, in place of the recording before."""
+    clear_path(meshcat)
+    path = look.X_WE[thin(look.X_WE, 0.004, np.inf), :3, 3]
+    if len(path) > 1:
+        draw(meshcat, "/recording/path", meshes.tube(path, 0.006), color)
+
+
+def clear_path(meshcat: Meshcat) -> None:
+    """Show no recording."""
+    meshcat.Delete("/recording")
 
 
 def animate(meshcat: Meshcat, linkage: Linkage, t: Array, q: Array) -> None:

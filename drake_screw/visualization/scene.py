@@ -24,6 +24,7 @@ from drake_screw.screws import pose_from_planar
 from drake_screw.tasks import Regions, WorkArea
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes
+from drake_screw.visualization.camera import camera_pose
 from drake_screw.visualization.cells import Cells, cells, table_axes
 from drake_screw.visualization.drawing import draw, draw_frames, rgba
 from drake_screw.visualization.legend import Slide, slide, with_legend
@@ -42,6 +43,10 @@ from drake_screw.visualization.workcell_drawing import draw_workcell
 MOST_DOTS = 6_000
 CLAY = "#efeee6"
 PATH = "#3d3a4a"
+BACK = (1.12, -0.15, 0.84)
+"""From the workcell to the camera."""
+AROUND = 0.1
+"""m, around the work area, for objects at its border."""
 SKY = ([0.93, 0.94, 0.96], [0.70, 0.72, 0.76])
 
 
@@ -96,9 +101,9 @@ class Scene:
         meshcat.SetProperty("/Axes", "visible", False)
         meshcat.SetProperty("/Background", "top_color", SKY[0])
         meshcat.SetProperty("/Background", "bottom_color", SKY[1])
-        draw_workcell(meshcat, robot, table, obstacles)
+        p_WR = draw_workcell(meshcat, robot, table, obstacles)
         self._draw_area()
-        self._aim_camera()
+        self._aim_camera(p_WR)
 
     def show_round(self, event: Round, regions: Regions) -> Sample:
         """Draw a finished round in place of the one before.
@@ -176,14 +181,15 @@ class Scene:
             outline = meshes.frame(lower, upper, self._height(i), 0.006)
             draw(self.meshcat, f"/work_area/{item.name}", outline.moved(self._X_WP(i)), INK)
 
-    def _aim_camera(self) -> None:
+    def _aim_camera(self, p_WR: Array) -> None:
+        """Have the robot, around which points (n, 3) are, and the work area in the picture."""
         stands = np.array([item.on is None for item in self._area.objects])
-        lower = self._area.lower[stands, :2].min(axis=0)
-        upper = self._area.upper[stands, :2].max(axis=0)
-        middle, z = (lower + upper) / 2.0, float(self._area.z[stands].min())
-        size = max(float(np.linalg.norm(upper - lower)), 0.6)
-        target = np.array([*(middle * [0.8, 0.45]), z + 0.14 * size])
-        self.meshcat.SetCameraPose(target + size * np.array([1.12, -0.15, 0.84]), target)
+        lower, upper = self._area.lower[stands, :2], self._area.upper[stands, :2]
+        z = float(self._area.z[stands].min())
+        (x0, y0), (x1, y1) = lower.min(axis=0) - AROUND, upper.max(axis=0) + AROUND
+        corners = np.array([[x, y, z] for x in (x0, x1) for y in (y0, y1)])
+        points = np.concatenate([p_WR, corners])
+        self.meshcat.SetCameraPose(*camera_pose(points, BACK, corners.mean(axis=0)))
 
     def _draw_tiles(self, path: str, drawn: Cells, rates: Array) -> float:
         """The regions coloured by failure rates (K,); returns the height they lie at."""
@@ -268,10 +274,12 @@ def _round_path(number: int) -> str:
 
 
 def _draw_token(meshcat: Meshcat, path: str, number: int, X_WT: Array) -> None:
+    """A numbered disc; the page turns the numeral upright (``numerals.js``)."""
     draw(meshcat, f"{path}/rim", meshes.disc(0.030, 0.003).moved(X_WT), INK)
     draw(meshcat, f"{path}/token", meshes.disc(0.027, 0.004).moved(X_WT), PAPER)
     X_TN = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0.005], [0, 0, 0, 1.0]])
-    draw(meshcat, f"{path}/number", meshes.number(number, 0.026).moved(X_WT @ X_TN), INK)
+    draw(meshcat, f"{path}/number", meshes.number(number, 0.026), INK)
+    meshcat.SetTransform(f"{path}/number", X_WT @ X_TN)
 
 
 def _spaced(path: Array, spacing: float) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause
 from drake_screw.runs.narration import describe
 from drake_screw.runs.pictures import make_scene
+from drake_screw.visualization.legend import upright_numerals
 from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.outlines import outlines
@@ -61,6 +63,7 @@ class LivePage:
         host: "localhost", or an address to listen on, so that others can look, too.
         port: of the page; any free one if None.
         teach: address of the page where a person gives demonstrations, if there is one.
+        kept: where the run keeps its scene as a page, if it does.
 
     Attributes:
         url: of the page.
@@ -76,16 +79,18 @@ class LivePage:
         host: str = "localhost",
         port: int | None = None,
         teach: str = "",
+        kept: Path | None = None,
     ) -> None:
         self._setup = setup
         self._meshcat = page_meshcat(host)
         self._scene = make_scene(setup, self._meshcat)
         panel = render("drake_screw.web", "live.html.j2", ink=INK, scale=failure_scale(), key=_KEY)
+        panel += upright_numerals()
         name = setup.scenario.name
         self._server = PanelServer(self._meshcat.port(), panel, name, host=host, port=port)
         self.url = self._server.url
         self._redrawn = 0.0
-        self._teach = teach
+        self._teach, self._kept = teach, kept
         self._demonstrations: tuple[Demonstration, ...] = ()
         goal = setup.goal
         self._state: dict[str, Any] = {
@@ -98,6 +103,7 @@ class LivePage:
             f"{goal.epsilon:g} with confidence {1 - goal.delta:.0%}",
             "map": "",
             "map_words": "",
+            "finished": "",
             "rounds": [],
             "demonstrations": [],
         }
@@ -131,11 +137,17 @@ class LivePage:
                     details=f"{claim}{event.reason}",
                     color=OUTCOME_COLORS[cause],
                     teach="",
+                    finished=self._farewell(),
                 )
 
     def close(self) -> None:
         """Stop serving the page."""
         self._server.close()
+
+    def _farewell(self) -> str:
+        """What is to be said when the run has finished."""
+        kept = "" if self._kept is None else f" What is shown here is kept in {self._kept}"
+        return f"The run has finished; this page does not change any more.{kept}"
 
     def _start_round(self, event: RoundStarted) -> None:
         self._demonstrations = event.demonstrations

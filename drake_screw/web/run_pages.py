@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Self
 
 from drake_screw.acquisition.interactive_teacher import InteractiveTeacher
 from drake_screw.assembly.setup import Parts, Setup
 from drake_screw.errors import DrakeScrewError
+from drake_screw.runs.pictures import SCENE
 from drake_screw.runs.run import Listener
 from drake_screw.scenario.schema import Scenario
 from drake_screw.web.live_page import LivePage
@@ -78,11 +80,12 @@ class RunPages:
         """The pages that are open."""
         return [page for page in (self.live, self.teaching) if page is not None]
 
-    def open(self, setup: Setup) -> None:
+    def open(self, setup: Setup, folder: Path | None = None) -> None:
         """Serve the pages of a run, and say where they are.
 
         Args:
             setup: of the run, made with `parts`.
+            folder: the run directory, if there is one; the pages say what is kept there.
 
         Raises:
             DrakeScrewError: they cannot be served, or the teacher's folder cannot be watched.
@@ -94,7 +97,8 @@ class RunPages:
         if self._interactive:
             teach = self._teaching_page(setup).open()
         if self.watched:
-            self.live = LivePage(setup, host=self._host, port=self._port, teach=teach)
+            kept = None if folder is None else folder.resolve() / SCENE
+            self.live = LivePage(setup, host=self._host, port=self._port, teach=teach, kept=kept)
             self._announce(f"watch the run at {self.live.url}")
         if teach:
             self._announce(f"give demonstrations at {teach}")

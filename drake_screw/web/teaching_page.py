@@ -13,16 +13,20 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Recording
 from drake_screw.runs.narration import describe
 from drake_screw.runs.pictures import make_scene
+from drake_screw.visualization.drawing import AXES
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.lifetime import page_meshcat
+from drake_screw.visualization.look_scene import clear_path
 from drake_screw.visualization.meshcat_page import render
-from drake_screw.visualization.palette import ACCENT
+from drake_screw.visualization.palette import ACCENT, INK
 from drake_screw.web.inbox import Inbox
 from drake_screw.web.inspector_panel import KEY
+from drake_screw.web.led_arm import PERIOD, TAKEN_BACK
+from drake_screw.web.offer import as_state
 from drake_screw.web.server import PanelServer
-from drake_screw.web.teaching_session import PERIOD, TeachingSession
+from drake_screw.web.teaching_session import TeachingSession
 
-UPDATE_PERIOD = 0.1
+UPDATE_PERIOD = 0.06
 """s. Between states of the panel while the arm moves."""
 
 
@@ -34,10 +38,11 @@ class TeachingPage:
     """Asks for demonstrations in the browser, for an `InteractiveTeacher`.
 
     It is a listener of the run, too. The page opens with the first request, unless it is opened
-    before. The person leads the arm by sliders of the end effector's pose (differential inverse
-    kinematics keeps the joints within their limits) or of the joints, and records; the recording is
-    cut into screws and planned at once, to be accepted or repeated. Or they drop a recording's
-    folder into the watched folder.
+    before. The person leads the arm by a handle on the hand, by keys, or by sliders of the end
+    effector's pose (differential inverse kinematics keeps the joints within their limits) or of the
+    joints, and records; the last seconds can be taken back. The recording is cut into screws and
+    planned at once, to be trimmed, accepted or repeated. Or they drop a recording's folder into the
+    watched folder.
 
     Args:
         setup: of the run.
@@ -81,8 +86,9 @@ class TeachingPage:
         setup, meshcat = self._setup, page_meshcat(self._host)
         self._scene = make_scene(setup, meshcat)
         self._inspector = Inspector(meshcat, setup.workcells, setup.objects)
-        key = ((ACCENT, "demonstrate here"), *KEY)
-        panel = render("drake_screw.web", "teaching.html.j2", accent=ACCENT, key=key)
+        key = ((ACCENT, "demonstrate here"), (INK, "the hand's path as recorded"), *KEY)
+        look: dict[str, Any] = {"accent": ACCENT, "axes": AXES, "back": f"{TAKEN_BACK:g}"}
+        panel = render("drake_screw.web", "teaching.html.j2", key=key, **look)
         self._title = f"{setup.scenario.name}: teach"
         self._server = PanelServer(
             meshcat.port(), panel, self._title, host=self._host, port=self._port
@@ -108,24 +114,24 @@ class TeachingPage:
             pass
         session = TeachingSession(self._setup, self._inspector, suggestion, number)
         self._scene.show_suggestion(suggestion.coordinates)
-        updated, changed = 0.0, True
+        updated, changed, due = 0.0, True, time.monotonic()
         while not session.over:
-            message = self._server.message(PERIOD)
-            while message is not None:
+            while (message := self._server.message(max(0.0, due - time.monotonic()))) is not None:
                 session.handle(message)
                 changed = True
-                message = self._server.message(0.0)
+            due = max(due, time.monotonic() - PERIOD) + PERIOD
             changed |= session.step()
             if session.leading and not session.recording:
                 changed |= self._take_dropped(session)
             now = time.monotonic()
             if changed and now - updated > UPDATE_PERIOD:
                 updated, changed = now, session.recording
-                self._inspector.pose(session.guided.arm, session.guided.q)
+                self._inspector.pose(session.led.arm, session.q)
                 self._server.show(session.state())
         self._inspector.clear()
+        clear_path(self._inspector.meshcat)
         self._scene.clear_suggestion()
-        self._inspector.pose(session.guided.arm, session.start)
+        self._inspector.pose(session.led.arm, session.start)
         given = session.accepted is not None
         self._show_idle("thank you; the run goes on" if given else "no demonstration there")
         return session.accepted
@@ -150,7 +156,8 @@ class TeachingPage:
         self._inspector.meshcat.Flush()
         state: dict[str, Any] = {"title": self._title, "headline": headline, "leading": False}
         state |= {"message": "", "clock": "", "hint": "", "can": []}
-        state |= {"pose": [], "joints": [], "segments": []}
+        state |= {"pose": [], "joints": [], "hand": None, "ends": (0.0, 0.0)}
+        state |= as_state(None, None)
         self._server.show(state)
 
     def _announce_request(self, number: int) -> None:

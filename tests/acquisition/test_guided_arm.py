@@ -62,3 +62,15 @@ def test_joints_go_where_they_are_guided_as_fast_as_they_may(guided, arm) -> Non
     assert guided.q[6] == pytest.approx(arm.upper[6] - LIMIT_MARGIN)
     assert np.allclose(np.delete(guided.q, 6), np.delete(goal, 6))
     assert steps * PERIOD > (arm.upper[6] + 0.49) / arm.velocity_limits[6]
+
+
+def test_an_arm_that_was_stretched_out_comes_back(guided, arm) -> None:
+    X_WG = arm.pose(guided.q)
+    for place in ([0.46, 1.17, -0.10], [0.3, 0.6, 0.0], [1.25, 0.7, 0.0], [0.9, 0.4, 0.1]):
+        X_WG[:3, 3] = place
+        for _ in range(300):
+            guided.guide_end_effector(X_WG)
+            assert (arm.margin(guided.q) >= LIMIT_MARGIN - 1e-9).all()
+        if place[0] in (0.3, 0.9):
+            assert translation_distance(arm.pose(guided.q), X_WG) < 1e-3
+            assert rotation_angle(arm.pose(guided.q), X_WG) < 1e-3

@@ -95,6 +95,49 @@ class Browser:
             value,
         )
 
+    def pull(self, selector: str, by: tuple[int, int], *, touch: bool = False) -> None:
+        """Drag the middle of an SVG path by so many pixels, with the mouse or a finger."""
+        from selenium.webdriver.common.actions.action_builder import ActionBuilder
+        from selenium.webdriver.common.actions.pointer_input import PointerInput
+
+        x, y = self.ask(
+            """
+            const path = document.querySelector(arguments[0]);
+            const box = path.ownerSVGElement.getBoundingClientRect();
+            const p = path.getPointAtLength(0.5 * path.getTotalLength());
+            return [box.left + p.x, box.top + p.y];
+            """,
+            selector,
+        )
+        pointer = PointerInput("touch" if touch else "mouse", "finger" if touch else "mouse")
+        actions = ActionBuilder(self.driver, mouse=pointer, duration=20)
+        hand = actions.pointer_action
+        hand.move_to_location(round(x), round(y)).pointer_down()
+        for k in range(1, 6):
+            hand.move_to_location(round(x + by[0] * k / 5), round(y + by[1] * k / 5))
+        hand.pointer_up()
+        actions.perform()
+
+    @contextmanager
+    def window(self, width: int, height: int) -> Iterator[None]:
+        """A window of another size; a narrow one is a phone's."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        try:
+            yield
+        finally:
+            self.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    def fits(self) -> bool:
+        """Whether nothing of the page is wider than its window, nor of a panel than the panel."""
+        return self.ask(
+            """
+            const wide = (item) => item.scrollWidth > item.clientWidth;
+            const panels = [...document.querySelectorAll("#panel, #playback")];
+            return ![document.documentElement, ...panels].some(wide);
+            """
+        )
+
     def select(self, selector: str, value: object) -> None:
         """Choose an entry of a list."""
         self.ask(

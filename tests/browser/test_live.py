@@ -27,13 +27,48 @@ print(lesson.recording.name, lesson.remark, len(demonstration.X_OE))
 """
 
 
+KEPT = "What is shown here is kept in "
+
+
 @pytest.fixture(scope="module")
 def run(finished_run):
     return open_run(finished_run)
 
 
+def upright(browser, number: int) -> float:
+    """How far a numeral's top is from straight up in the picture; rad."""
+    X = browser.node(f"demonstrations/{number:02d}/place/number")["matrix"]
+    X = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]]) @ X
+    foot, top = (browser.pixel(X[:3, 3] + s * X[:3, 1]) for s in (-0.1, 0.1))
+    across, up = top[0] - foot[0], foot[1] - top[1]
+    return abs(float(np.arctan2(across, up)))
+
+
+def robot_is_in_view(browser) -> bool:
+    """Whether every point of the robot is within the 3-D view."""
+    return browser.ask(
+        """
+        const robot = viewer.scene_tree.children.workcell.children.baxter.object;
+        viewer.camera.updateWorldMatrix(true, false);
+        robot.updateWorldMatrix(true, true);
+        let seen = true, count = 0;
+        robot.traverse((o) => {
+          if (!o.geometry) return;
+          const p = o.geometry.attributes.position;
+          for (let i = 0; i < p.count; i += 7, ++count) {
+            const v = new MeshCat.THREE.Vector3(p.getX(i), p.getY(i), p.getZ(i));
+            v.applyMatrix4(o.matrixWorld).project(viewer.camera);
+            seen = seen && Math.abs(v.x) < 1 && Math.abs(v.y) < 1 && v.z < 1;
+          }
+        });
+        return seen && count > 100;
+        """
+    )
+
+
 def test_a_run_is_told_as_it_happens(browser, run) -> None:
-    view = LivePage(run.setup)
+    kept = run.directory.path / "meshcat.html"
+    view = LivePage(run.setup, kept=kept)
     try:
         browser.open(view.url)
         browser.until(lambda: "starting" in browser.text("#headline"))
@@ -57,9 +92,25 @@ def test_a_run_is_told_as_it_happens(browser, run) -> None:
             "return document.querySelectorAll('#demonstrations li').length"
         )
         assert (rounds, demonstrations) == (2, 2)
+        said = f"The run has finished; this page does not change any more. {KEPT}{kept}"
+        assert browser.text("#finished") == said
+        assert robot_is_in_view(browser)
+        browser.until(lambda: max(upright(browser, n) for n in (1, 2)) < 0.06)
+        browser.ask(
+            "viewer.set_property(['Cameras', 'default', 'rotated', '<object>'], 'position',"
+            "[0.3, 1.2, 1.6]); viewer.set_dirty()"
+        )
+        browser.until(lambda: max(upright(browser, n) for n in (1, 2)) < 0.06)
+        for width, height in ((390, 844), (1024, 768)):
+            with browser.window(width, height):
+                browser.until(lambda w=width: browser.ask("return innerWidth") == w)
+                assert browser.fits()
         assert browser.complaints() == []
     finally:
         view.close()
+    browser.until(lambda: browser.ask("return document.body.classList.contains('gone')"))
+    before = "return getComputedStyle(document.querySelector('#panel'), '::before').content"
+    assert browser.ask(before) == "none"
 
 
 def test_regions_fill_while_a_round_goes_on(browser, run) -> None:

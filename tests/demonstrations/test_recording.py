@@ -215,3 +215,20 @@ def test_a_joint_without_limits_is_counted_on_where_it_jumps_by_a_turn() -> None
     again = checked(recording(t, q + np.array([20.0 * np.pi, 0.0])), lower, upper)
     np.testing.assert_allclose(again.q, q, atol=1e-9)
     assert checked(recording(t, q), lower, upper).notes == ()
+
+
+def test_a_part_begins_at_zero_and_says_what_it_is_of() -> None:
+    t, q = ramp()
+    X_WE = np.tile(np.eye(4), (11, 1, 1))
+    X_WE[:, 0, 3] = t
+    by_hand = Recording("hand", (), t, np.zeros((11, 0)), np.eye(4)[None], X_WE=X_WE)
+    for whole in (recording(t, q), by_hand):
+        part = whole.part(0.03, 0.06)
+        np.testing.assert_allclose(part.t, [0.0, 0.01, 0.02, 0.03], atol=1e-12)
+        np.testing.assert_array_equal(part.q, whole.q[3:7])
+        assert part.cut
+        assert part.notes == ("kept 0.03 s to 0.06 s of 0.10 s",)
+        assert whole.part(0.0, 0.1) is whole
+        with pytest.raises(RecordingError, match=r"1 sample from 0\.03 s to 0\.03 s"):
+            whole.part(0.03, 0.03)
+    np.testing.assert_array_equal(by_hand.part(0.03, 0.06).X_WE, X_WE[3:7])

@@ -10,18 +10,13 @@ from contextlib import suppress
 from typing import Any
 from urllib.parse import urlsplit
 
-import numpy as np
 import pytest
 
-from drake_screw.acquisition import Suggestion
 from drake_screw.assembly.setup import Setup
 from drake_screw.errors import DrakeScrewError, RecordingError
 from drake_screw.scenario.loader import dump_scenario, load_scenario
-from drake_screw.visualization.inspector import Inspector
-from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.web.run_pages import RunPages
 from drake_screw.web.server import check_address
-from drake_screw.web.teaching_session import TeachingSession
 
 INTERACTIVE = "teacher={kind: interactive}"
 
@@ -141,31 +136,3 @@ def test_a_folder_that_cannot_be_watched(tmp_path) -> None:
     teacher = f"teacher={{kind: interactive, folder: {tmp_path / 'file'}}}"
     with pytest.raises(RecordingError, match="file: cannot be watched"):
         open_pages([teacher], [])
-
-
-def test_nonsense_does_not_move_the_arm() -> None:
-    setup = Setup(load_scenario("pouring", [INTERACTIVE]))
-    inspector = Inspector(page_meshcat("localhost"), setup.workcells, setup.objects)
-    place = Suggestion(6, np.array([[0.85, 0.45, 0.0]]), 2)
-    session = TeachingSession(setup, inspector, place, 0)
-    for message in (
-        {"pose": 0, "value": float("nan")},
-        {"pose": 6, "value": 0.1},
-        {"joint": 7, "value": 0.1},
-        {"joint": 0, "value": float("inf")},
-        {"pose": 3, "value": float("nan")},
-        {"do": "accept"},
-        {"do": "_restart"},
-        {"do": 3},
-        {},
-    ):
-        session.handle(message)
-        assert not session.step(), message
-    assert not session.over
-    session.handle({"pose": 3, "value": 1e300})
-    session.step()
-    session.handle({"joint": 3, "value": 99.0})
-    while session.step():
-        pass
-    arm = setup.workcell.arm
-    assert 0.0 < arm.margin(session.guided.q)[3] < 0.01

@@ -4,6 +4,8 @@ listen((state) => {
   element("headline").textContent = state.headline;
   element("headline").style.borderColor = state.color;
   element("details").textContent = state.details;
+  element("finished").textContent = state.finished;
+  document.body.classList.toggle("finished", Boolean(state.finished));
   element("teach").hidden = !state.teach;
   element("teach").firstElementChild.href = state.teach;
   element("goal").textContent = state.goal;
