@@ -20,24 +20,30 @@ from drake_screw.errors import DrakeScrewError, RunDirectoryError
 WRITABLE_OUTPUT = "Give an --output in a folder that exists and that you may write to."
 
 
-def write_text(file: Path, text: str) -> None:
+def write_text(file: Path, text: str, *, shared: bool = False) -> None:
     """Write a file, UTF-8, so that it is there whole or not at all.
+
+    Args:
+        file: to appear.
+        text: it is to hold.
+        shared: whether other processes may be writing the same file just now.
 
     Raises:
         OSError: it cannot be written.
     """
-    write_bytes(file, text.encode())
+    write_bytes(file, text.encode(), shared=shared)
 
 
-def write_bytes(file: Path, content: bytes) -> None:
-    """Write a file so that it is there whole or not at all.
+def write_bytes(file: Path, content: bytes, *, shared: bool = False) -> None:
+    """As `write_text`, bytes.
 
     Raises:
         OSError: it cannot be written.
     """
     if file.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
-    temporary = file.with_name(f".{file.name}.part")
+    own = f".{os.getpid()}" if shared else ""
+    temporary = file.with_name(f".{file.name}{own}.part")
     try:
         temporary.write_bytes(content)
         os.replace(temporary, file)
