@@ -814,3 +814,12 @@ def test_a_scenario_stored_before_there_were_obstacles_has_none(
     scenario = load_stored_scenario(write())
     assert scenario.obstacles == ()
     assert scenario.robot.tool is None
+
+
+def test_aliases_that_stand_for_more_than_anybody_means_are_refused(
+    write: Callable[..., Path],
+) -> None:
+    doubled = "".join(f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]\n" for i in range(1, 60))
+    error = error_of(write(("teacher:", f"a0: &a0 [x]\n{doubled}teacher:")))
+    assert error.message == "not usable: aliases make more than 100,000 values of it"
+    assert error.remedy == "Write out what is meant, without & and *."
