@@ -167,24 +167,44 @@ def _size(size: int) -> str:
     return f"{size / 1e3:.0f} kB" if size < 1e6 else f"{size / 1e6:.1f} MB"
 
 
-def make_folder(path: Path, what: str) -> None:
-    """Make the folder of something new, such as a run; an empty one is taken as it is.
+def make_folder(path: Path, what: str, files: Mapping[str, str]) -> None:
+    """Make the folder of something new, such as a run, with its first files.
+
+    An empty one is taken as it is, and so is one in which a process that was killed had not come as
+    far as the last of these files, which makes the folder what it is.
 
     Args:
         path: of the folder.
         what: it is for, a word such as "run".
+        files: their texts, by their names.
 
     Raises:
         RunDirectoryError: there is something at that place already.
-        OSError: it cannot be written.
+        OSError: it cannot be written; what was written is removed.
     """
-    if path.exists() and (not path.is_dir() or any(path.iterdir())):
+    *_, last = files
+    begun = path / f".{last}.part"
+    makings = {*files, *(f".{name}.part" for name in files)} - {last}
+    there = {item.name for item in path.iterdir()} if path.is_dir() else set()
+    unfinished = begun.name in there and there <= makings
+    if path.exists() and (not path.is_dir() or (there and not unfinished)):
         raise RunDirectoryError(
             f"exists already; a {what} never overwrites anything",
             remedy=f"Give another --output, or continue a {what} with --resume.",
             file=path,
         )
     path.mkdir(parents=True, exist_ok=True)
+    try:
+        begun.touch()
+        for name, text in files.items():
+            write_text(path / name, text)
+    except OSError:
+        for name in {*makings, last}:
+            with suppress(OSError):
+                (path / name).unlink(missing_ok=True)
+        with suppress(OSError):
+            path.rmdir()
+        raise
 
 
 def fresh_folder(parent: Path) -> Path:

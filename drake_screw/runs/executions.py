@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -30,7 +31,7 @@ from drake_screw.execution.simulate import Execution
 from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_csv
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Outcomes, concatenate
-from drake_screw.runs.run import open_run
+from drake_screw.runs.run import Run, open_run
 from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.lifetime import scratch
@@ -40,6 +41,7 @@ ROUND = 1_000_000
 
 TRIES = 20  # times as many instances are drawn in a region at most as are wanted
 SHOWN = 4  # executions in the recording
+_UNWRITABLE = "Executions are written beside the run; make its folder writable."
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,33 @@ def execute(
     X_WO = setup.area.X_WO(coordinates)
     solved = np.flatnonzero(outcomes.any_success).tolist()
     best = {i: setup.plan(demonstrations, coordinates[i], most=1) for i in solved}
-    done = _executed(setup, best, X_WO, workers, progress, free_objects=free_objects)
+    parent = opened.directory.path / "executions"
+    with writing(parent, _UNWRITABLE):  # before anything is simulated, which takes long
+        folder = fresh_folder(parent)
+    try:
+        done = _executed(setup, best, X_WO, workers, progress, free_objects=free_objects)
+        trials = _trials(opened, coordinates, outcomes, best, done)
+        found = summarize(trials)
+        with writing(folder, _UNWRITABLE):
+            write_folder(folder, partial(_fill, setup, trials, found, free_objects=free_objects))
+    except BaseException:
+        with suppress(OSError):
+            folder.rmdir()
+            folder.parent.rmdir()
+        raise
+    return Executions(folder, _assumed(setup), found)
+
+
+def _trials(
+    opened: Run,
+    coordinates: Array,
+    outcomes: Outcomes,
+    best: Mapping[int, RankedPlan],
+    done: Mapping[int, Execution],
+) -> list[Trial]:
+    """What became of each instance."""
+    setup, demonstrations = opened.setup, opened.demonstrations
+    X_WO = setup.area.X_WO(coordinates)
     trials = []
     for i, place in enumerate(coordinates):
         region = int(setup.regions.index(place))
@@ -125,42 +153,31 @@ def execute(
         else:
             why = why_failed(setup.arms, outcomes[i], demonstrations, X_WO[i])
             trials.append(Trial(region, place, "", why, None))
-    found = summarize(trials)
+    return trials
 
-    def fill(folder: Path) -> None:
-        (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
-        (folder / "summary.txt").write_text(f"{found}\n")
-        robots = {one.name: one.robot for one in setup.arms}
-        shown = [
-            (
-                trial.execution,
-                setup.area.X_WO(trial.coordinates),
-                robots.get(trial.arm, setup.robot),
+
+def _fill(
+    setup: Setup, trials: Sequence[Trial], found: TrialSummary, folder: Path, *, free_objects: bool
+) -> None:
+    """Write the table, the summary and the recording that plays."""
+    (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
+    (folder / "summary.txt").write_text(f"{found}\n")
+    robots = {one.name: one.robot for one in setup.arms}
+    shown = [
+        (trial.execution, setup.area.X_WO(trial.coordinates), robots.get(trial.arm, setup.robot))
+        for trial in _chosen(trials)
+        if trial.execution is not None
+    ]
+    if shown:
+        with scratch():
+            page = recording_html(
+                shown,
+                table=setup.table,
+                objects=setup.objects,
+                obstacles=setup.obstacles,
+                free_objects=free_objects,
             )
-            for trial in _chosen(trials)
-            if trial.execution is not None
-        ]
-        if shown:
-            with scratch():
-                page = recording_html(
-                    shown,
-                    table=setup.table,
-                    objects=setup.objects,
-                    obstacles=setup.obstacles,
-                    free_objects=free_objects,
-                )
-            (folder / "executions.html").write_text(page)
-
-    parent = opened.directory.path / "executions"
-    remedy = "Executions are written beside the run; make its folder writable."
-    with writing(parent, remedy):
-        folder = fresh_folder(parent)
-        try:
-            write_folder(folder, fill)
-        except BaseException:
-            folder.rmdir()
-            raise
-    return Executions(folder, _assumed(setup), found)
+        (folder / "executions.html").write_text(page)
 
 
 def _executed(
