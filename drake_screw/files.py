@@ -7,6 +7,7 @@ import errno
 import hashlib
 import io
 import os
+import resource
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -143,7 +144,12 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 
 
 def _room(place: Path, error: OSError) -> str:
-    """Which file system is full, and what is needed, where it is that."""
+    """Which file system is full, or what limit was met, and what is needed, where it is that."""
+    needed = getattr(error, "__notes__", [])
+    if error.errno == errno.EFBIG:
+        limit = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+        known = [] if limit < 0 else [f"the limit is {_size(limit)} a file (ulimit -f)"]
+        return "; ".join(["", *known, *needed])
     if error.errno not in _NO_ROOM:
         return ""
     mount = place.absolute()
@@ -153,7 +159,7 @@ def _room(place: Path, error: OSError) -> str:
         free = f" has {_size(shutil.disk_usage(mount).free)} left"
     except OSError:
         free = ""
-    return "; ".join(["", f"the file system {mount}{free}", *getattr(error, "__notes__", [])])
+    return "; ".join(["", f"the file system {mount}{free}", *needed])
 
 
 def _size(size: int) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Callable
+import resource
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -124,3 +125,24 @@ def test_text_replaces_a_file_at_once(tmp_path: Path) -> None:
     assert [f.name for f in tmp_path.iterdir()] == ["a"]
     (tmp_path / "b").write_bytes(b"abc")
     assert file_hash(tmp_path / "b").startswith("ba7816bf8f01cfea414140de5dae2223")
+
+
+@pytest.fixture
+def _small_files() -> Iterator[None]:
+    """Files may have 4,000 bytes."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4000, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.usefixtures("_small_files")
+def test_a_limit_on_files_is_told_with_what_is_needed(tmp_path: Path) -> None:
+    file = tmp_path / "large"
+    with pytest.raises(RunDirectoryError) as caught, writing(file, "Ask for more."):
+        write_text(file, "x" * 70_000)
+    assert caught.value.message == (
+        "cannot be written: File too large; the limit is 4 kB a file (ulimit -f); "
+        "70 kB are needed for large"
+    )
+    assert not list(tmp_path.iterdir())

@@ -73,7 +73,7 @@ class RunDirectory:
         if not (path / RUN).is_file():
             raise RunDirectoryError(
                 f"not a run directory: it has no {RUN}",
-                remedy="Give the folder that a run printed at its end. One that was ended before it "
+                remedy="Give the folder that a run printed at its end. One that ended before it "
                 "had begun can be given to --output again.",
                 file=path,
             )

@@ -823,3 +823,10 @@ def test_aliases_that_stand_for_more_than_anybody_means_are_refused(
     error = error_of(write(("teacher:", f"a0: &a0 [x]\n{doubled}teacher:")))
     assert error.message == "not usable: aliases make more than 100,000 values of it"
     assert error.remedy == "Write out what is meant, without & and *."
+
+
+def test_of_very_many_problems_the_first_are_listed(write: Callable[..., Path]) -> None:
+    error = error_of(write(("teacher:", f"obstacles: [{', '.join('1' * 600)}]\nteacher:")))
+    first, *lines = error.message.splitlines()
+    assert first == "600 problems, of which these are the first 12"
+    assert sum(line.startswith("  line 22: obstacles.") for line in lines) == 12
