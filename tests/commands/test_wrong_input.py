@@ -222,3 +222,9 @@ def test_a_run_on_a_file_system_that_is_read_only_says_so(
     assert code == 2
     assert re.search(rf"^error: {place}", err), err
     assert err.count("error:") == 1
+
+
+def test_an_option_that_a_strategy_does_not_have_is_told_with_the_scenario(command) -> None:
+    code, _, err = command("check", "pouring", "--set", "coverage.options.x=1")
+    assert code == 2
+    assert re.match(r"error: \S+pouring\.yaml: no option 'x' in bandit 'eprocess'\n", err)

@@ -204,6 +204,12 @@ def test_obstacles_and_tools_may_be_such_meshes(tmp_path: Path) -> None:
     (tmp_path / "small.stl").write_text(stl(CORNERS * [1.0, 1.0, 0.0]))
     with pytest.raises(ModelError, match="this mesh is flat"):
         shape.corners()
+    (tmp_path / "small.stl").write_text(stl())
+    with pytest.raises(
+        ModelError, match="10000 times as large as in the file, goes as far as 3e"
+    ) as e:
+        PlacedShape(MeshShape(tmp_path / "small.stl", 1e4)).corners()
+    assert "0.001 if they are in mm" in str(e.value)
 
 
 def test_a_large_obj_file_is_coarsened_to_be_looked_at(tmp_path: Path) -> None:
