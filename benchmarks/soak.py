@@ -32,7 +32,8 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
-from soak_inputs import KINDS, make_originals
+from soak_inputs import KINDS
+from soak_originals import make_originals
 from soak_worker import ACCEPTED, ENDED, FAULTS, REFUSED, serve
 
 Input = tuple[str, int]

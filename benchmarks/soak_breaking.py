@@ -9,89 +9,13 @@ import os
 import shutil
 import socket
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
-
-NUMBERS = (
-    *("nan", ".nan", "inf", "-.inf", "1e308", "-1e308", "1e-320", "1e999", "0", "-1", "-0.0"),
-    *("1", "2", "1e9", "99999999", "-99999999", "9" * 25, "9" * 5000, "0x10", "1_000", "1,5"),
-    *("1.5.2", "--3", "1e", "٣", "½", "1 000", "+", "1e5000", "3.14159", "6.2832", "180"),
-)
-WORDS = (
-    *("", " ", "~", "null", "true", "no", "[]", "{}", "[1, 2", "{a: 1", "&a [*a]", "*nobody"),
-    *("!!python/object:os.system x", "!tag 1", "? a", "- - - x", "a: b: c", "%", "@x", "`x`", "#"),
-    *(
-        "'",
-        '"',
-        "'open",
-        '"\\x"',
-        '"\\U00110000"',
-        '"\\ud800"',
-        "\x00",
-        "\x07",
-        "\x1b[31m",
-        "\u2028",
-    ),
-    *("x" * 300, "x" * 6000, "é" * 300, "名前", "\u202e", "a/b", "../..", "/", "/dev/null", "."),
-    *("~root", "$HOME", "{x}", "%s", "NaN", "None", "a\nb", "a\tb", "-", "--", "=", "a=b", "a.b.c"),
-    *("package://nowhere/x", "http://localhost:1/x", "file:///x", "con", "bowl", "base", "world"),
-)
-VALUES: tuple[Any, ...] = (
-    *(None, True, False, 0, -1, 1, 2, 10**25, 10**400, 1e308, -1e308, 5e-324, 0.5, -0.5, 1e6, 3),
-    *(
-        float("nan"),
-        float("inf"),
-        float("-inf"),
-        "",
-        "x",
-        "\x00",
-        "é",
-        "x" * 3000,
-        "1",
-        "nan",
-        "a b",
-    ),
-    *([], {}, [[]], [None], {"": 1}, {"x": {}}, [1, 2], [2, 1], [0, 0], [1, 2, 3], ["a"], [[1], 2]),
-    *([float("nan"), 1], [1e308, 1e308], {"a": 1, "b": [1]}, list(range(500)), [{}] * 3, 4097),
-    *("/", ".", "..", "/dev/null", "nowhere.yaml", "os:system", "no.such:Thing", "base", "bowl"),
-)
-BYTES = (
-    *(b"\xef\xbb\xbf", b"\xff\xfe", b"\x00", b"\xff", b"\xc3\x28", b"\xed\xa0\x80", b"\r\n", b"\r"),
-    *(b"\n\n", b"\t", b"\x1b", b"\x85", b"\xe2\x80\xa8", b"\x1a", b"---\n", b"...\n", b'"', b"'"),
-    *(
-        b"<",
-        b"&",
-        b"&#0;",
-        b"]]>",
-        b"{",
-        b"}",
-        b"[",
-        b"]",
-        b":",
-        b",",
-        b";",
-        b"-",
-        b"\\",
-        b"*a",
-        b"%",
-    ),
-)
-
-Random = np.random.Generator
-
-
-def pick(rng: Random, choices: Sequence[Any]) -> Any:
-    """One of some choices."""
-    return choices[int(rng.integers(len(choices)))]
-
-
-def word(rng: Random) -> str:
-    """A text that stands for a value."""
-    return str(pick(rng, NUMBERS if rng.random() < 0.5 else WORDS))
+from soak_values import BYTES, VALUES, Random, pick, word
 
 
 def broken_bytes(rng: Random, data: bytes) -> bytes:
@@ -172,9 +96,8 @@ def broken_tree(rng: Random, tree: Any) -> Any:
             case 0:
                 del inside[key]
             case 1 if isinstance(inside, dict):
-                inside[pick(rng, (f"{key}s", "x", "", 3, "name", str(key).upper()))] = inside.pop(
-                    key
-                )
+                other_name = pick(rng, (f"{key}s", "x", "", 3, "name", str(key).upper()))
+                inside[other_name] = inside.pop(key)
             case 1:
                 inside.append(copy.deepcopy(inside[key]))
             case 2:
@@ -194,9 +117,8 @@ def _deep(rng: Random) -> str:
     """YAML that grows or never ends when it is taken at its word."""
     depth = int(pick(rng, (30, 200, 3000)))
     bomb = "a0: &a0 [x]\n" + "".join(f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]\n" for i in range(1, 30))
-    return str(
-        pick(rng, ("[" * depth, "{a: " * depth, "- " * depth, "&a [*a]", bomb, "a: &a {b: *a}"))
-    )
+    deep = "[" * depth, "{a: " * depth, "- " * depth
+    return str(pick(rng, (*deep, "&a [*a]", bomb, "a: &a {b: *a}")))
 
 
 def broken_yaml(rng: Random, data: bytes) -> bytes:
