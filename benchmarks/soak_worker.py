@@ -173,7 +173,11 @@ def _names(arguments: list[str]) -> Iterator[str]:
     yield from ("--set", "--object", "recording.yaml", "jug.obj", "part.stl", "arm.sdf")
     for argument in arguments[1:]:
         if not argument.startswith("--"):
-            yield from argument.split("=")
+            parts = argument.split("=")
+            yield from parts
+            yield from (
+                os.path.abspath(os.path.expanduser(p)) for p in parts if re.match(r"~|\.", p)
+            )
 
 
 def _listing(folder: Path) -> dict[Path, tuple[int, int]]:

@@ -107,7 +107,7 @@ def main() -> None:
             app()
     except DrakeScrewError as error:
         _log.debug("raised here:", exc_info=True)
-        _complain(str(error))
+        _complain(str(error) if _is_somewhere() else _NOWHERE)
         sys.exit(BAD_INPUT)
     except (OSError, RuntimeError) as error:  # of the system, that nobody has better words for
         _log.debug("raised here:", exc_info=True)
