@@ -49,7 +49,8 @@ def check_object_poses(
         RecordingError: an object is nowhere near, for its unit or frame probably.
     """
     p = X_WE[:, :3, 3]
-    away = np.linalg.norm(p[:, None] - X_WO[None, :, :3, 3], axis=-1).min(axis=0)
+    with np.errstate(over="ignore"):
+        away = np.linalg.norm(p[:, None] - X_WO[None, :, :3, 3], axis=-1).min(axis=0)
     nearest = int(np.argmin(away))
     wrong = int(np.argmax(away)) if away.max() > NOWHERE else nearest
     if away[wrong] > FAR and (away[wrong] > NOWHERE or wrong == nearest):

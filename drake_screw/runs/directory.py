@@ -58,11 +58,8 @@ class RunDirectory:
         runs = Path("runs") / record.scenario
         with writing(path or runs, remedy="Choose a folder you may write to with --output."):
             path = fresh_folder(runs) if path is None else path
-            make_folder(path, "run")
-            directory = cls(path, record)
-            write_text(path / SCENARIO, scenario_text)
-            directory.save()
-        return directory
+            make_folder(path, "run", {SCENARIO: scenario_text, RUN: json_text(record)})
+        return cls(path, record)
 
     @classmethod
     def open(cls, path: Path) -> Self:
@@ -74,7 +71,8 @@ class RunDirectory:
         if not (path / RUN).is_file():
             raise RunDirectoryError(
                 f"not a run directory: it has no {RUN}",
-                remedy="Give the folder that a run printed at its end.",
+                remedy="Give the folder that a run printed at its end. One that ended before it "
+                "had begun can be given to --output again.",
                 file=path,
             )
         return cls(path, read_run_record(path / RUN))

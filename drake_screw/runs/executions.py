@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -30,7 +31,7 @@ from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Outcomes, concatenate
 from drake_screw.runs.executions_page import executions_page
-from drake_screw.runs.run import open_run
+from drake_screw.runs.run import Run, open_run
 from drake_screw.sharing import Workers
 from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tasks import draw_in_all
@@ -41,6 +42,7 @@ ROUND = 1_000_000
 """The round whose instances are executed. No run gets that far, so they are fresh."""
 
 TRIES = 20  # times as many instances are drawn in a region at most as are wanted
+_UNWRITABLE = "Executions are written beside the run; make its folder writable."
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,33 @@ def execute(
     X_WO = setup.area.X_WO(coordinates)
     solved = np.flatnonzero(outcomes.any_success).tolist()
     best = {i: setup.plan(demonstrations, coordinates[i], most=1) for i in solved}
-    done = _executed(setup, best, X_WO, workers, tell, free_objects=free_objects)
+    parent = opened.directory.path / "executions"
+    with writing(parent, _UNWRITABLE):  # before anything is simulated, which takes long
+        folder = fresh_folder(parent)
+    try:
+        done = _executed(setup, best, X_WO, workers, tell, free_objects=free_objects)
+        trials = _trials(opened, coordinates, outcomes, best, done)
+        found = summarize(trials)
+        with writing(folder, _UNWRITABLE):
+            write_folder(folder, partial(_fill, setup, trials, found, free_objects=free_objects))
+    except BaseException:
+        with suppress(OSError):
+            folder.rmdir()
+            folder.parent.rmdir()
+        raise
+    return Executions(folder, _assumed(setup), found)
+
+
+def _trials(
+    opened: Run,
+    coordinates: Array,
+    outcomes: Outcomes,
+    best: Mapping[int, RankedPlan],
+    done: Mapping[int, Execution],
+) -> list[Trial]:
+    """What became of each instance."""
+    setup, demonstrations = opened.setup, opened.demonstrations
+    X_WO = setup.area.X_WO(coordinates)
     trials = []
     for i, place in enumerate(coordinates):
         region = int(setup.regions.index(place))
@@ -126,25 +154,18 @@ def execute(
         else:
             why = why_failed(setup.arms, outcomes[i], demonstrations, X_WO[i])
             trials.append(Trial(region, place, "", why, None))
-    found = summarize(trials)
+    return trials
 
-    def fill(folder: Path) -> None:
-        (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
-        (folder / "summary.txt").write_text(f"{found}\n")
-        page = executions_page(setup, trials, free_objects=free_objects)
-        if page is not None:
-            (folder / "executions.html").write_text(page, encoding="utf-8")
 
-    parent = opened.directory.path / "executions"
-    remedy = "Executions are written beside the run; make its folder writable."
-    with writing(parent, remedy):
-        folder = fresh_folder(parent)
-        try:
-            write_folder(folder, fill)
-        except BaseException:
-            folder.rmdir()
-            raise
-    return Executions(folder, _assumed(setup), found)
+def _fill(
+    setup: Setup, trials: Sequence[Trial], found: TrialSummary, folder: Path, *, free_objects: bool
+) -> None:
+    """Write the table, the summary and the page that plays them."""
+    (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
+    (folder / "summary.txt").write_text(f"{found}\n")
+    page = executions_page(setup, trials, free_objects=free_objects)
+    if page is not None:
+        (folder / "executions.html").write_text(page, encoding="utf-8")
 
 
 def _executed(

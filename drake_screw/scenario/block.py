@@ -30,6 +30,11 @@ def refusal(message: str, remedy: str | None = None) -> PydanticCustomError:
     return PydanticCustomError("rule", "{message}", {"message": message, "remedy": remedy})
 
 
+LARGEST = {"m": 1e3, "kg": 1e6}
+"""By unit: what is larger is in another one, and more than geometry and dynamics can be done with.
+Of the shapes of a robot's model see `robot.model_text.LARGEST`."""
+
+
 class Block(BaseModel):
     """A block of a scenario file. The fields are its keys.
 
@@ -52,6 +57,17 @@ class Block(BaseModel):
         """
         yield from ()
 
+    def _too_large(self) -> Iterator[Problem]:
+        for name, about in type(self).model_fields.items():
+            extra, value = about.json_schema_extra, getattr(self, name)
+            unit = str(extra.get("unit")) if isinstance(extra, dict) else ""
+            if unit in LARGEST and value is not None:
+                ends = getattr(value, "ends", value)
+                largest = max(ends if isinstance(ends, tuple) else (ends,), key=abs)
+                if abs(largest) > LARGEST[unit]:
+                    message = f"{largest:g} {unit} is beyond {LARGEST[unit]:,.0f} {unit}"
+                    yield Problem((name,), message, f"Numbers here are in {unit}.")
+
     @model_validator(mode="before")
     @classmethod
     def _nothing_is_empty(cls, data: Any) -> Any:
@@ -61,7 +77,7 @@ class Block(BaseModel):
     def _keeps_its_rules(self) -> Self:
         errors = [
             InitErrorDetails(type=refusal(p.message, p.remedy), loc=p.keys, input=None)
-            for p in self.broken_rules()
+            for p in (*self._too_large(), *self.broken_rules())
         ]
         if errors:
             raise ValidationError.from_exception_data(type(self).__name__, errors)

@@ -200,10 +200,8 @@ def new_study(
     place = studies if output is None else Path(output)
     with writing(place, remedy="Choose a folder you may write to with --output."):
         path = fresh_folder(studies) if output is None else Path(output)
-        make_folder(path, "study")
-        write_text(path / SCENARIO, dump_scenario(scenario))
-        write_text(path / RUNS, csv_text([HEADER]))
-        write_text(path / STUDY, json.dumps(record, indent=2) + "\n")
+        texts = dump_scenario(scenario), csv_text([HEADER]), json.dumps(record, indent=2) + "\n"
+        make_folder(path, "study", dict(zip((SCENARIO, RUNS, STUDY), texts, strict=True)))
     return Study(path, load_stored_scenario(path / SCENARIO), record)
 
 
@@ -218,15 +216,19 @@ def open_study(path: PathLike) -> Study:
     if not file.is_file():
         raise RunDirectoryError(
             f"not a study directory: it has no {STUDY}",
-            remedy="Give the folder that a study printed.",
+            remedy="Give the folder that a study printed. One that was ended before it had begun "
+            "can be given to --output again.",
             file=path,
         )
     try:
         record = json.loads(file.read_text())
         found, known = record["format"], dict(record["hashes"])
-        if not {"regions", "runs"} <= record.keys() or "model" not in known:
+        numbers = [record["runs"], *record["regions"]]
+        if "model" not in known or len(numbers) < 2:
             raise KeyError("keys are missing")
-    except (ValueError, KeyError, TypeError) as error:
+        if not all(type(number) is int and number >= 1 for number in numbers):
+            raise ValueError("regions and runs are not whole numbers from 1")
+    except (ValueError, KeyError, TypeError, RecursionError, OSError) as error:
         raise RunDirectoryError(
             f"damaged: {error}", remedy="Restore it, or begin the study again.", file=file
         ) from error
