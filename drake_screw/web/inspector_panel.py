@@ -24,9 +24,9 @@ from drake_screw.visualization.attempt import (
     describe_segment,
     headline,
 )
-from drake_screw.visualization.inspector import Drawn
+from drake_screw.visualization.inspector import COPY, Drawn
 from drake_screw.visualization.outlines import outlines
-from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
+from drake_screw.visualization.palette import ACCENT, OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
 from drake_screw.visualization.rounds import mean_failure, sample
 from drake_screw.visualization.scene import MOST_DOTS
 from drake_screw.visualization.screw_drawing import AXIS
@@ -39,6 +39,8 @@ KEY = (
     (STATUS_COLORS[FAILED], "failed: the segment, the arm's ghost, the joint or what touches"),
     (STATUS_COLORS[AHEAD], "never reached"),
     (AXIS, "screw axis; the arrow around it is its turn"),
+    (ACCENT, "where the guiding pose asks for the wrist"),
+    (COPY, "the arm with the demonstration beside"),
 )
 """What the colours of a drawn attempt mean."""
 
