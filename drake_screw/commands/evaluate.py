@@ -11,8 +11,10 @@ from drake_screw.commands.options import (
     JsonOption,
     ModelOption,
     ScenarioArgument,
+    SchedulerOption,
     SetOption,
     VerboseOption,
+    chosen_cluster,
     chosen_scenario,
 )
 from drake_screw.commands.output import Output, check_writable
@@ -44,6 +46,7 @@ def evaluate(
         ),
     ],
     model: ModelOption = None,
+    scheduler: SchedulerOption = None,
     set_: SetOption = None,
     json: JsonOption = None,
     verbose: VerboseOption = False,
@@ -61,6 +64,8 @@ def evaluate(
     from drake_screw.runs.outcome_table import tabulate_outcomes
 
     loaded = chosen_scenario(scenario, set_, model)
-    with Countdown(out.console) as shown:
-        found = tabulate_outcomes(loaded, demonstrations, instances, output, tell=shown)
+    with chosen_cluster(scheduler, out) as cluster, Countdown(out.console) as shown:
+        found = tabulate_outcomes(
+            loaded, demonstrations, instances, output, tell=shown, cluster=cluster
+        )
     out.present(found)

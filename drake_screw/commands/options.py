@@ -17,7 +17,7 @@ from drake_screw.errors import DrakeScrewError, counted
 if TYPE_CHECKING:
     from drake_screw.commands.output import Output
     from drake_screw.scenario.schema import Scenario
-    from drake_screw.sharing import Workers
+    from drake_screw.sharing import Executor, Workers
 
 _log = logging.getLogger(__name__)
 
@@ -126,14 +126,29 @@ def chosen_workers(workers: int | None, scheduler: str | None, out: Output) -> I
     Raises:
         DrakeScrewError: both are given, or the cluster cannot be used.
     """
-    if scheduler is None:
-        yield workers
-        return
-    if workers is not None:
+    if scheduler is not None and workers is not None:
         raise DrakeScrewError(
             "--workers are processes of this machine, and --scheduler brings its own",
             remedy="Give one of them.",
         )
+    with chosen_cluster(scheduler, out) as cluster:
+        yield workers if cluster is None else cluster
+
+
+@contextmanager
+def chosen_cluster(scheduler: str | None, out: Output) -> Iterator[Executor | None]:
+    """A context with the workers of a Dask scheduler; None where none is given.
+
+    Args:
+        scheduler: its address.
+        out: is told how many they are.
+
+    Raises:
+        DrakeScrewError: the cluster cannot be used.
+    """
+    if scheduler is None:
+        yield None
+        return
     from drake_screw.sharing.cluster import cluster
 
     with cluster(scheduler) as joined:

@@ -18,7 +18,9 @@ from drake_screw.planning.touching import CollisionCounts, CollisionTally
 from drake_screw.runs.instance_tables import read_instances
 from drake_screw.runs.outcome_columns import outcome_columns
 from drake_screw.runs.outcome_files import outcome_file
+from drake_screw.runs.shared_outcomes import SharedOutcomes
 from drake_screw.scenario.schema import Scenario
+from drake_screw.sharing import Executor
 from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.typing import Array, PathLike
 
@@ -95,6 +97,7 @@ def tabulate_outcomes(
     output: PathLike,
     *,
     tell: Tell = to_nobody,
+    cluster: Executor | None = None,
 ) -> OutcomeTable:
     """Write the outcomes of all instances with all demonstrations as a table.
 
@@ -109,6 +112,7 @@ def tabulate_outcomes(
             for each instance, in their order; columns are those of `outcome_columns`, that of what
             touches for each demonstration of which a plan collides.
         tell: told how far it is.
+        cluster: whose workers plan; None for all processors of this machine.
 
     Raises:
         DrakeScrewError: anything that cannot be read or written; nothing is written then.
@@ -119,7 +123,12 @@ def tabulate_outcomes(
     learned = [setup.learn(recording) for recording in setup.recordings(demonstrations)]
     with writing(output, WRITABLE_OUTPUT), outcome_file(output) as table:
         found = read_instances(Path(instances), setup.area, tell)
-        tally, portions = _Tally(setup, learned), _Portions()
+        tally = _Tally(setup, learned)
+        portions = (
+            _Portions(setup, learned)
+            if cluster is None
+            else SharedOutcomes(setup, learned, cluster)
+        )
         columns, done = found.columns, 0
 
         def planned(count: int) -> None:
@@ -129,7 +138,7 @@ def tabulate_outcomes(
 
         planned(0)
         for coordinates in found.blocks():
-            outcomes = portions.plan(setup, learned, coordinates, planned)
+            outcomes = portions.plan(coordinates, planned)
             tally.add(coordinates, outcomes)
             table.add(outcome_columns(setup, learned, coordinates, columns, outcomes))
         tell(Step("writing the table"))
@@ -141,27 +150,26 @@ class _Portions:
 
     Outcomes do not depend on how they are divided.
 
+    Args:
+        setup: of the scenario.
+        demonstrations: D of them.
+
     Attributes:
         seconds: that planning took.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, setup: Setup, demonstrations: Sequence[Demonstration]) -> None:
+        self._setup, self._demonstrations = setup, demonstrations
         self.seconds = 0.0
         self._size, self._most = PORTION
 
-    def plan(
-        self,
-        setup: Setup,
-        demonstrations: Sequence[Demonstration],
-        coordinates: Array,
-        planned: Callable[[int], None],
-    ) -> Outcomes:
+    def plan(self, coordinates: Array, planned: Callable[[int], None]) -> Outcomes:
         """Outcomes (N, D) of instances (N, k, c)."""
         parts, first = [], 0
         while first < len(coordinates):
             some = coordinates[first : first + self._size]
             began = time.perf_counter()
-            parts.append(setup.evaluate(demonstrations, some))
+            parts.append(self._setup.evaluate(self._demonstrations, some))
             taken = time.perf_counter() - began
             self.seconds += taken
             first += len(some)
