@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from rich.console import Console
 from rich.segment import Segments
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.files import writable, write_text, writing
+from drake_screw.files import check_writable, writable, write_text, writing
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -40,7 +41,7 @@ class Output:
         self.console = Console(stderr=json == STANDARD_OUTPUT)
         self._json = json
         if json is not None and json != STANDARD_OUTPUT:
-            check_writable(Path(json), JSON)
+            check_writable(Path(json), _remedy(JSON))
 
     def say(self, text: object) -> None:
         """Print words as they are, however long."""
@@ -83,24 +84,6 @@ class Output:
             write_text(Path(self._json), text)
 
 
-def check_writable(file: Path, option: str) -> None:
-    """Refuse a file that cannot be written, before the work is done.
-
-    Args:
-        file: that an option names.
-        option: its name, such as ``--html``.
-
-    Raises:
-        DrakeScrewError: there cannot be such a file.
-    """
-    if file.is_dir():
-        raise _unwritable(file, option, "it is a folder")
-    if not file.parent.is_dir():
-        raise _unwritable(file, option, f"there is no folder '{file.parent}'")
-    if not os.access(file.parent, os.W_OK):
-        raise _unwritable(file, option, "its folder is read-only")
-
-
 def check_page(html: Path | None, json: str | None) -> None:
     """Refuse a page that cannot be written, before the work is done.
 
@@ -111,17 +94,31 @@ def check_page(html: Path | None, json: str | None) -> None:
     Raises:
         DrakeScrewError: there cannot be such a file, or the two are one.
     """
-    if html is None:
-        return
-    check_writable(html, HTML)
-    if json is not None and Path(json).resolve() == html.resolve():
-        raise DrakeScrewError(f"{HTML} and {JSON} name one file", remedy="Give two.", file=html)
+    if html is not None:
+        check_writable(html, _remedy(HTML))
+        check_distinct({HTML: html, JSON: json})
+
+
+def check_distinct(files: Mapping[str, str | Path | None]) -> None:
+    """Refuse one file for two purposes.
+
+    Args:
+        files: by the options that name them; None where one is not given.
+
+    Raises:
+        DrakeScrewError: two are the same.
+    """
+    named: dict[str, str] = {}
+    for option, file in files.items():
+        if file is None or file == STANDARD_OUTPUT:
+            continue
+        other = named.setdefault(os.path.realpath(file), option)
+        if other != option:
+            raise DrakeScrewError(
+                f"{other} and {option} name one file", remedy="Give two.", file=file
+            )
 
 
 def _remedy(option: str) -> str:
     remedy = writable(option)
     return f"{remedy.removesuffix('.')}, or -." if option == JSON else remedy
-
-
-def _unwritable(file: Path, option: str, why: str) -> DrakeScrewError:
-    return DrakeScrewError(f"cannot be written: {why}", remedy=_remedy(option), file=file)
