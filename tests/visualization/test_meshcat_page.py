@@ -15,7 +15,8 @@ PAGE = "<html><head><title>Drake MeshCat</title></head><body>a </body> in a stri
 def test_html_is_added_at_the_end_of_the_body() -> None:
     page = add_to_page(PAGE, Markup("<p>1 &lt; 2</p>"), title="<b> & c", head=Markup("<style/>"))
     assert page == (
-        "<html><head>\n<style/><title>&lt;b&gt; &amp; c</title></head>"
+        '<html><head>\n<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        "<style/><title>&lt;b&gt; &amp; c</title></head>"
         "<body>a </body> in a string<p>1 &lt; 2</p></body></html>"
     )
 
