@@ -752,7 +752,8 @@ def test_what_is_written_is_read_back(
 def test_each_method_of_segmentation_has_its_own_keys_and_defaults() -> None:
     published = load_scenario("pouring", ["segmentation.method=published"]).segmentation
     assert (published.method, published.config) == ("published", SegmentationConfig())
-    assert load_scenario("pouring").segmentation.config == FaithfulConfig()
+    for nothing in ("segmentation.method=null", "segmentation.method=faithful"):
+        assert load_scenario("pouring", [nothing]).segmentation.config == FaithfulConfig()
     faithful = load_scenario("pouring", ["segmentation.reach=0.5"]).segmentation
     assert (faithful.method, faithful.config) == ("faithful", FaithfulConfig(reach=0.5))
     assert faithful.min_progress is None
