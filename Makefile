@@ -6,8 +6,9 @@ WORKERS ?= auto
 SHARED_OUT := -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 MODULE ?=
 SAMPLE ?=
+SITE = -c docs/site -d build/doctrees -j auto .
 
-.PHONY: run test slow install install-test lint types layers unit coverage notebooks mutate hooks clean help
+.PHONY: run test slow install install-test lint types layers unit coverage docs linkcheck notebooks mutate hooks clean help
 
 help:  ## list the targets
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -15,7 +16,7 @@ help:  ## list the targets
 run: install  ## set up, then run scenario pouring
 	$(BIN)/drake-screw run pouring
 
-test: install-test lint types layers unit notebooks  ## set up, then lint, check types and layers, run all tests and notebooks
+test: install-test lint types layers unit docs  ## set up, then lint, check types and layers, run all tests and tutorials, build the site
 
 install: $(VENV)/.installed
 
@@ -30,11 +31,11 @@ $(VENV)/.installed: pyproject.toml | $(VENV)/bin/python
 	touch $@
 
 $(VENV)/.installed-test: pyproject.toml | $(VENV)/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,docs]'
 	touch $@ $(VENV)/.installed
 
 $(VENV)/.installed-development: pyproject.toml | $(VENV)/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,development]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test,docs,development]'
 	touch $@ $(VENV)/.installed $(VENV)/.installed-test
 
 lint: install-test  ## ruff
@@ -57,7 +58,17 @@ coverage: install-test  ## pytest, and which lines it ran; a good deal slower
 slow: install-test  ## the long trials that `make test` leaves out
 	$(BIN)/pytest -n $(WORKERS) --dist worksteal -m slow
 
-notebooks: install-test  ## run the tutorials
+docs: install-test  ## run the tutorials and build the documentation site, build/site; any warning or dead link fails
+	$(BIN)/python docs/site/execute.py
+	rm -rf build/site
+	$(BIN)/sphinx-build -b html -W --keep-going --quiet $(SITE) build/site
+	$(BIN)/python docs/site/check_links.py build/site
+
+linkcheck: install-test  ## ask for the addresses of other sites that the documentation links to
+	$(BIN)/python docs/site/execute.py
+	$(BIN)/sphinx-build -b linkcheck $(SITE) build/linkcheck
+
+notebooks: install-test  ## run the tutorials alone
 	$(BIN)/pytest --nbmake --nbmake-timeout=300 -n $(WORKERS) tutorials
 
 mutate: $(VENV)/.installed-development  ## mutation testing; MODULE=drake_screw/screws/poses.py, SAMPLE=40 mutants at random

@@ -28,8 +28,8 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.plugins import names
-from drake_screw.processes import share_out
 from drake_screw.scenario.loader import load_scenario
+from drake_screw.sharing import share_out
 from drake_screw.studies.experiment import Experiment
 
 RULES, PLACES, CHOICES = (

@@ -6,7 +6,8 @@ Processor time is the operating system's account of the command and all the proc
 started. Every command is run once before, so that compiled code is in the cache and files are in
 memory; of the repeats the least counts, since other work can only add. With --history a line of
 JSON is appended to FILE for each call, and where the file has one already the times of the last are
-printed beside: a slip is seen there.
+printed beside: a slip is seen there. commands.jsonl, beside this file, has such lines; its clock
+times are of a machine that had much else to do.
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.files import now
-from drake_screw.runs.directory import versions
+from drake_screw.versions import versions
 
 PLACES = "x,y\n" + "".join(f"{0.75 + 0.01 * i:.2f},{0.02 * i:.2f}\n" for i in range(20))
 
 VERBS: dict[str, tuple[str, ...]] = {
-    "--help": ("--help",),
+    "help": ("--help",),
     "list": ("list",),
     "check": ("check", "pouring"),
     "run": ("run", "pouring", "--quiet", "--output", "{fresh}"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -28,10 +29,11 @@ from drake_screw.commands import (
     study,
 )
 from drake_screw.commands.any_console import any_console
+from drake_screw.commands.collector import collect_seldom
 from drake_screw.commands.instance_option import InstanceCommand
 from drake_screw.commands.log import set_up_logging
 from drake_screw.commands.options import VerboseOption
-from drake_screw.commands.signals import interruptible
+from drake_screw.commands.signals import Verbs, interruptible
 from drake_screw.errors import DrakeScrewError, shortened
 
 BAD_INPUT = 2
@@ -60,6 +62,7 @@ _log = logging.getLogger(__name__)
 
 app = typer.Typer(
     name="drake-screw",
+    cls=Verbs,
     help="Manipulation plans from few demonstrations: measure how much of a work area they cover, "
     "and learn where to give the next one.",
     epilog="Begin with:  drake-screw run pouring",
@@ -98,6 +101,7 @@ def _versions(verbose: bool) -> list[str]:
 
 def main() -> None:
     """Run the command; bad input prints one message and ends with exit code 2."""
+    collect_seldom()
     any_console()
     set_up_logging()
     began = time.perf_counter()
@@ -106,15 +110,33 @@ def main() -> None:
             app()
     except DrakeScrewError as error:
         _log.debug("raised here:", exc_info=True)
-        _complain(str(error))
+        _complain(str(error) if _is_somewhere() else _NOWHERE)
         sys.exit(BAD_INPUT)
-    except OSError as error:  # that nobody has better words for
+    except (OSError, RuntimeError) as error:  # of the system, that nobody has better words for
         _log.debug("raised here:", exc_info=True)
-        place = "" if error.filename is None else f"{error.filename}: "
-        _complain(f"{place}{error.strerror or error}")
+        if not _is_somewhere():
+            _complain(_NOWHERE)
+        elif isinstance(error, OSError):
+            place = "" if error.filename is None else f"{error.filename}: "
+            _complain(f"{place}{error.strerror or error}")
+        else:
+            raise
         sys.exit(BAD_INPUT)
     finally:
         _log.debug("ended after %.1f s", time.perf_counter() - began)
+
+
+_NOWHERE = """the folder that you are in does not exist any more
+  Change to one that does: cd FOLDER"""
+
+
+def _is_somewhere() -> bool:
+    """Whether the current folder exists; Drake says in a RuntimeError that it does not."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return False
+    return True
 
 
 def _complain(text: str) -> None:

@@ -47,6 +47,17 @@ class DrakeScrewError(Exception):
         return shortened(f"{place}{self.message}{remedy}")
 
 
+@contextmanager
+def about(file: PathLike | None) -> Iterator[None]:
+    """Within, errors that name no file are about this one."""
+    try:
+        yield
+    except DrakeScrewError as error:
+        if error.file is None and file is not None:
+            error.file = Path(file)
+        raise
+
+
 LONGEST = 240
 """Characters of a word, or of what is quoted, that a message repeats; of more, both ends."""
 

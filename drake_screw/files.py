@@ -7,6 +7,7 @@ import errno
 import hashlib
 import io
 import os
+import resource
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -20,31 +21,58 @@ from drake_screw.errors import DrakeScrewError, RunDirectoryError
 WRITABLE_OUTPUT = "Give an --output in a folder that exists and that you may write to."
 
 
-def write_text(file: Path, text: str) -> None:
+def write_text(file: Path, text: str, *, shared: bool = False) -> None:
     """Write a file, UTF-8, so that it is there whole or not at all.
+
+    Args:
+        file: to appear.
+        text: it is to hold.
+        shared: whether other processes may be writing the same file just now.
 
     Raises:
         OSError: it cannot be written.
     """
-    write_bytes(file, text.encode())
+    write_bytes(file, text.encode(), shared=shared)
 
 
-def write_bytes(file: Path, content: bytes) -> None:
-    """Write a file so that it is there whole or not at all.
+def write_bytes(file: Path, content: bytes, *, shared: bool = False) -> None:
+    """As `write_text`, bytes.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    try:
+        with appearing(file, shared=shared) as temporary:
+            temporary.write_bytes(content)
+    except OSError as error:
+        error.add_note(f"{_size(len(content))} are needed for {file.name}")
+        raise
+
+
+@contextmanager
+def appearing(file: Path, *, shared: bool = False) -> Iterator[Path]:
+    """A context in which a file is written bit by bit, and after which it is there whole.
+
+    Args:
+        file: to appear.
+        shared: whether other processes may be writing the same file just now.
+
+    Yields:
+        Where to write it, in the same folder. If something is raised, nothing stays of it.
 
     Raises:
         OSError: it cannot be written.
     """
     if file.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
-    temporary = file.with_name(f".{file.name}.part")
+    own = f".{os.getpid()}" if shared else ""
+    temporary = file.with_name(f".{file.name}{own}.part")
     try:
-        temporary.write_bytes(content)
+        yield temporary
         os.replace(temporary, file)
-    except OSError as error:
+    except BaseException:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
-        error.add_note(f"{_size(len(content))} are needed for {file.name}")
         raise
 
 
@@ -137,7 +165,12 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 
 
 def _room(place: Path, error: OSError) -> str:
-    """Which file system is full, and what is needed, where it is that."""
+    """Which file system is full, or what limit was met, and what is needed, where it is that."""
+    needed = getattr(error, "__notes__", [])
+    if error.errno == errno.EFBIG:
+        limit = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+        known = [] if limit < 0 else [f"the limit is {_size(limit)} a file (ulimit -f)"]
+        return "; ".join(["", *known, *needed])
     if error.errno not in _NO_ROOM:
         return ""
     mount = place.absolute()
@@ -147,7 +180,7 @@ def _room(place: Path, error: OSError) -> str:
         free = f" has {_size(shutil.disk_usage(mount).free)} left"
     except OSError:
         free = ""
-    return "; ".join(["", f"the file system {mount}{free}", *getattr(error, "__notes__", [])])
+    return "; ".join(["", f"the file system {mount}{free}", *needed])
 
 
 def _size(size: int) -> str:
@@ -161,24 +194,44 @@ def _size(size: int) -> str:
     return f"{size / 1e3:.0f} kB" if size < 1e6 else f"{size / 1e6:.1f} MB"
 
 
-def make_folder(path: Path, what: str) -> None:
-    """Make the folder of something new, such as a run; an empty one is taken as it is.
+def make_folder(path: Path, what: str, files: Mapping[str, str]) -> None:
+    """Make the folder of something new, such as a run, with its first files.
+
+    An empty one is taken as it is, and so is one in which a process that was killed had not come as
+    far as the last of these files, which makes the folder what it is.
 
     Args:
         path: of the folder.
         what: it is for, a word such as "run".
+        files: their texts, by their names.
 
     Raises:
         RunDirectoryError: there is something at that place already.
-        OSError: it cannot be written.
+        OSError: it cannot be written; what was written is removed.
     """
-    if path.exists() and (not path.is_dir() or any(path.iterdir())):
+    *_, last = files
+    begun = path / f".{last}.part"
+    makings = {*files, *(f".{name}.part" for name in files)} - {last}
+    there = {item.name for item in path.iterdir()} if path.is_dir() else set()
+    unfinished = begun.name in there and there <= makings
+    if path.exists() and (not path.is_dir() or (there and not unfinished)):
         raise RunDirectoryError(
             f"exists already; a {what} never overwrites anything",
             remedy=f"Give another --output, or continue a {what} with --resume.",
             file=path,
         )
     path.mkdir(parents=True, exist_ok=True)
+    try:
+        begun.touch()
+        for name, text in files.items():
+            write_text(path / name, text)
+    except OSError:
+        for name in {*makings, last}:
+            with suppress(OSError):
+                (path / name).unlink(missing_ok=True)
+        with suppress(OSError):
+            path.rmdir()
+        raise
 
 
 def fresh_folder(parent: Path) -> Path:

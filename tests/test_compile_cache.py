@@ -6,6 +6,8 @@ import importlib.util
 import itertools
 import logging
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -94,3 +96,38 @@ def test_where_nothing_can_be_written_it_works_and_says_so(tmp_path, caplog, mon
         assert hits(first) == 0
     (line,) = caplog.messages
     assert "cannot be kept: Not a directory" in line
+
+
+ALGEBRA = """
+import sys
+import numpy as np
+from drake_screw.compile_cache import cached_njit
+
+@cached_njit()
+def solved(A, b):
+    if A.shape[0] != len(b):
+        raise ValueError("of another size")
+    return np.linalg.solve(A, b), [i for i in range(len(b))]
+
+if __name__ == "__main__":
+    x, places = solved(np.array([[2.0, 1.0], [0.0, 1.0]]), np.array([5.0, 1.0]))
+    print(*x, *places)
+    try:
+        solved(np.eye(2), np.zeros(3))
+    except ValueError as error:
+        print(error)
+    print(sum(solved.stats.cache_hits.values()))
+"""
+
+
+def test_what_was_kept_answers_in_a_new_process_as_it_did_when_it_was_compiled(tmp_path) -> None:
+    """Loading it does not load all that numba can compile; what the code calls is there."""
+    file = tmp_path / "algebra.py"
+    file.write_text(ALGEBRA)
+    compiled, kept = (
+        subprocess.run([sys.executable, file], capture_output=True, text=True, check=False)
+        for _ in range(2)
+    )
+    answer = ["2.0", "1.0", "0", "1", "of", "another", "size"]
+    assert (compiled.stdout.split(), compiled.stderr) == ([*answer, "0"], "")
+    assert (kept.stdout.split(), kept.stderr) == ([*answer, "1"], "")

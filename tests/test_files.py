@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import resource
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -40,16 +44,68 @@ def test_a_folder_that_cannot_be_filled_does_not_appear(tmp_path: Path) -> None:
     assert [f.name for f in tmp_path.iterdir()] == ["out"]
 
 
+FIRST = {"scenario": "what", "record": "state"}
+
+
 def test_a_folder_is_made_where_there_is_nothing_or_an_empty_one(tmp_path: Path) -> None:
-    make_folder(tmp_path / "a" / "b", "run")
-    make_folder(tmp_path / "a" / "b", "run")
+    (tmp_path / "empty").mkdir()
+    for new in (tmp_path / "a" / "b", tmp_path / "empty"):
+        make_folder(new, "run", FIRST)
+        assert {file.name: file.read_text() for file in new.iterdir()} == FIRST
     (tmp_path / "file").write_text("kept")
-    for taken in (tmp_path / "a", tmp_path / "file"):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "scenario").write_text("kept")
+    for taken in (tmp_path / "a", tmp_path / "a" / "b", tmp_path / "file", tmp_path / "mine"):
         with pytest.raises(RunDirectoryError, match="a run never overwrites anything") as caught:
-            make_folder(taken, "run")
+            make_folder(taken, "run", FIRST)
         assert caught.value.file == taken
         assert "continue a run with --resume" in str(caught.value)
     assert (tmp_path / "file").read_text() == "kept"
+    assert (tmp_path / "mine" / "scenario").read_text() == "kept"
+
+
+class Killed(BaseException):
+    """Stands for a kill: nothing is tidied up after it."""
+
+
+@pytest.mark.parametrize("system_call", range(1, 5))
+def test_a_folder_that_a_killed_process_had_begun_can_be_made_again(
+    system_call: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls = 0
+
+    def killed_at(function: Callable[..., object]) -> Callable[..., object]:
+        def call(*arguments: object) -> object:
+            nonlocal calls
+            calls += 1
+            if calls == system_call:
+                raise Killed
+            return function(*arguments)
+
+        return call
+
+    new = tmp_path / "new"
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "write_bytes", killed_at(Path.write_bytes))
+        patch.setattr(os, "replace", killed_at(os.replace))
+        with pytest.raises(Killed):
+            make_folder(new, "run", FIRST)
+    assert not (new / "record").exists()
+    make_folder(new, "run", FIRST)
+    assert {file.name: file.read_text() for file in new.iterdir()} == FIRST
+
+
+def test_of_a_folder_that_cannot_be_filled_nothing_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_room(new: str, old: Path) -> None:
+        if old.name == "record":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "replace", no_room)
+    with pytest.raises(OSError, match="No space left"):
+        make_folder(tmp_path / "new", "run", FIRST)
+    assert not list(tmp_path.iterdir())
 
 
 def test_what_the_system_refuses_is_an_error_with_a_remedy(tmp_path: Path) -> None:
@@ -69,3 +125,24 @@ def test_text_replaces_a_file_at_once(tmp_path: Path) -> None:
     assert [f.name for f in tmp_path.iterdir()] == ["a"]
     (tmp_path / "b").write_bytes(b"abc")
     assert file_hash(tmp_path / "b").startswith("ba7816bf8f01cfea414140de5dae2223")
+
+
+@pytest.fixture
+def _small_files() -> Iterator[None]:
+    """Files may have 4,000 bytes."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4000, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.usefixtures("_small_files")
+def test_a_limit_on_files_is_told_with_what_is_needed(tmp_path: Path) -> None:
+    file = tmp_path / "large"
+    with pytest.raises(RunDirectoryError) as caught, writing(file, "Ask for more."):
+        write_text(file, "x" * 70_000)
+    assert caught.value.message == (
+        "cannot be written: File too large; the limit is 4 kB a file (ulimit -f); "
+        "70 kB are needed for large"
+    )
+    assert not list(tmp_path.iterdir())

@@ -90,12 +90,14 @@ class RoundStarted:
 class RegionsEvaluated:
     """Some more instances of a round were planned; the counts (K,) are of the round so far.
 
-    Where the partition refines itself they are of the whole work area, (1,).
+    Where the partition refines itself they are of the whole work area, (1,). `total` is how many
+    instances the round will have in all; None where that depends on what they come to.
     """
 
     round: int
     samples: NDArray[np.int64]
     failures: NDArray[np.int64]
+    total: int | None = None
 
 
 @dataclass(frozen=True)

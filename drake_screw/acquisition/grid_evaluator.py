@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from drake_screw.acquisition.events import Evaluation, InstancesExecuted, RegionsEvaluated
 from drake_screw.acquisition.tries import Executed, Executing, Try, begin_tries, joined
-from drake_screw.bandits import Strategy, Verdict
+from drake_screw.bandits import OfFixedSize, Strategy, Verdict
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Outcomes, Planner, concatenate
 from drake_screw.tasks import GridRegions, chance, draw_in_all
@@ -57,7 +57,9 @@ class Evaluator:
         """
         area, start = self.regions.area, self.q_start
         with begin_tries(self.planner, self.executing, area, start, round, demonstrations) as tries:
-            pulls = _Pulls(self, round, tries)
+            sized = self.strategy if isinstance(self.strategy, OfFixedSize) else None
+            total = None if sized is None else sized.total(self.regions.K, attempt=attempt)
+            pulls = _Pulls(self, round, tries, total)
             verdict = self.strategy.decide(pulls, self.regions.K, attempt=attempt)
             return pulls.evaluation(), verdict
 
@@ -65,9 +67,11 @@ class Evaluator:
 class _Pulls:
     """The strategy's source of samples, which remembers all it drew."""
 
-    def __init__(self, evaluator: Evaluator, round: int, tries: Try) -> None:
+    def __init__(
+        self, evaluator: Evaluator, round: int, tries: Try, total: int | None = None
+    ) -> None:
         self._by = evaluator
-        self._round = round
+        self._round, self._total = round, total
         self._try = tries
         self._width = 0 if evaluator.executing is None else evaluator.executing.width
         K = evaluator.regions.K
@@ -130,5 +134,7 @@ class _Pulls:
         self._executed.append(executed)
         if self._by.progress is not None:
             self._by.progress(
-                RegionsEvaluated(self._round, self._samples.copy(), self._failures.copy())
+                RegionsEvaluated(
+                    self._round, self._samples.copy(), self._failures.copy(), self._total
+                )
             )

@@ -23,8 +23,8 @@ from drake_screw.execution.parallel import Bench, Job, Judged, judge
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.planning.outcomes import one_outcome
 from drake_screw.planning.roll import turned_along
-from drake_screw.processes import Crew
 from drake_screw.screws import inverse
+from drake_screw.sharing import Crew
 from drake_screw.tasks import Symmetry
 from drake_screw.typing import Array
 

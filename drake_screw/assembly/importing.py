@@ -12,6 +12,7 @@ from drake_screw.errors import RecordingError
 from drake_screw.files import WRITABLE_OUTPUT, write_folder, writing
 from drake_screw.recordings import Mapping, Understood
 from drake_screw.recordings import read_recordings as read
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tables.text import Progress
 from drake_screw.typing import PathLike
 
@@ -37,12 +38,15 @@ def read_recordings(
     )
 
 
-def write_library(found: Sequence[Understood], library: PathLike) -> tuple[Path, ...]:
+def write_library(
+    found: Sequence[Understood], library: PathLike, tell: Tell = to_nobody
+) -> tuple[Path, ...]:
     """Write recordings into a library, each a folder, with the mapping that it was read by.
 
     Args:
         found: recordings, all with objects.
         library: made if missing; recordings that it has stay.
+        tell: told how far it is.
 
     Returns:
         Their folders.
@@ -61,7 +65,8 @@ def write_library(found: Sequence[Understood], library: PathLike) -> tuple[Path,
             )
     with writing(library, WRITABLE_OUTPUT, RecordingError):
         library.mkdir(parents=True, exist_ok=True)
-        for each, folder in zip(found, folders, strict=True):
+        for number, (each, folder) in enumerate(zip(found, folders, strict=True)):
+            tell(Step("writing recordings", number, len(found)))
             recording = each.recording
             assert recording is not None
             write_folder(folder, partial(_fill, recording, each.mapping.text()))

@@ -11,6 +11,7 @@ from drake_screw.demonstrations import Look, Recording
 from drake_screw.demonstrations.library import is_recording
 from drake_screw.demonstrations.look_summary import LookSummary, summarized
 from drake_screw.errors import RecordingError
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.typing import PathLike
 
 
@@ -54,7 +55,7 @@ class LooksSummary:
     recordings: tuple[LookSummary, ...]
 
 
-def look_at_path(setup: Setup, path: PathLike) -> Looks:
+def look_at_path(setup: Setup, path: PathLike, tell: Tell = to_nobody) -> Looks:
     """Look at a recording, or at all in a folder.
 
     Of a format other than the usual one, a file is a recording and a folder a library.
@@ -62,13 +63,19 @@ def look_at_path(setup: Setup, path: PathLike) -> Looks:
     Args:
         setup: says how recordings are read, what objects there are, and how paths are cut.
         path: of the recording or library.
+        tell: told how far it is.
 
     Raises:
         RecordingError: there is none, or one cannot be used.
     """
     path = Path(path)
+    tell(Step(f"reading {path}"))
     recordings, library = _read(setup, path)
-    return Looks(path, library, setup, tuple(setup.look(recording) for recording in recordings))
+    looks = []
+    for number, recording in enumerate(recordings):
+        tell(Step("looking at recordings", number, len(recordings)))
+        looks.append(setup.look(recording))
+    return Looks(path, library, setup, tuple(looks))
 
 
 def _read(setup: Setup, path: Path) -> tuple[tuple[Recording, ...], bool]:

@@ -41,6 +41,7 @@ from drake_screw.bandits.naive_pac import NaivePac, sample_size
 from drake_screw.bandits.spending import attempt_delta
 from drake_screw.errors import counted
 from drake_screw.scenario.schema import Scenario
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tasks import anywhere
 
 PROBE = 2_000
@@ -188,18 +189,24 @@ class Preview:
         return str(self.motion) if n is None else counted(n, "recording")
 
 
-def preview(scenario: Scenario) -> Preview:
+def preview(scenario: Scenario, tell: Tell = to_nobody) -> Preview:
     """Build everything a scenario names and describe the run it would make.
+
+    Args:
+        scenario: to describe.
+        tell: told of each step.
 
     Raises:
         DrakeScrewError: whatever would make the run fail on its input.
     """
+    tell(Step("building the workcell"))
     setup = Setup(scenario)
     goal, tree, block, first = setup.goal, setup.tree, scenario.teacher, setup.arms[0]
     asking, recordings = scenario.demonstrations, teacher_recordings(setup)
     _ = setup.executing
     recorder = setup.recorder
-    rate, no_demonstration = _plans_per_second(setup)
+    rate, no_demonstration = _plans_per_second(setup, tell)
+    tell(Step("looking at the work area"))
     other = None
     if isinstance(recorder, Recorder) and recorder.model_file is not None:
         names = recorder.model_file.stem, recorder.arm.joint_names, recorder.arm.end_effector
@@ -269,18 +276,20 @@ def _samples(setup: Setup) -> PreviewedSamples:
             return PreviewedSamples()
 
 
-def _plans_per_second(setup: Setup) -> tuple[float | None, str | None]:
+def _plans_per_second(setup: Setup, tell: Tell) -> tuple[float | None, str | None]:
     """Measured with one demonstration on instances from all over the work area; or why not."""
     if setup.scenario.teacher.kind == "interactive":
         return None, None
     rng = np.random.default_rng(setup.scenario.seed)
     place = random_suggestion(setup.regions, rng)
     teacher = UsableLessons(setup.teacher, setup.learn)
+    tell(Step("having a demonstration given"))
     lesson = teacher.demonstrate(place, number=0, used=(), rng=rng)
     if lesson.recording is None:
         return None, lesson.remark
     demonstration = setup.learn(lesson.recording)
     X_WO = setup.area.X_WO(anywhere(setup.area, rng, PROBE))
+    tell(Step(f"planning {PROBE:,} instances"))
     setup.planner.any_success([demonstration], X_WO[:1], setup.start)
     began = time.perf_counter()
     setup.planner.any_success([demonstration], X_WO, setup.start)

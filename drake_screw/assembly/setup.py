@@ -22,6 +22,7 @@ from drake_screw.assembly.recorder import Learning, Recorder
 from drake_screw.assembly.ways import ways
 from drake_screw.bandits import CertifyOrSplit, Goal, Strategy, make_strategy
 from drake_screw.demonstrations import Demonstration, Look, Recording
+from drake_screw.errors import about
 from drake_screw.planning import Cause, Outcomes, Plan, Planner, connection
 from drake_screw.plugins import find
 from drake_screw.scenario.schema import Scenario
@@ -126,7 +127,8 @@ class Setup(PlanningSetup):
         if make is not None:
             return make(self)
         block = self.scenario.coverage
-        return make_strategy(block.strategy, self.goal, **block.strategy_options)
+        with about(self.scenario.source):
+            return make_strategy(block.strategy, self.goal, **block.strategy_options)
 
     @cached_property
     def tree(self) -> CertifyOrSplit | None:

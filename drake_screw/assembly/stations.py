@@ -47,6 +47,7 @@ def station_config(
         setup.obstacles,
         free_objects=free_objects,
         allowed=allowed,
+        model=setup.workcell.model.hash,
     )
 
 

@@ -4,7 +4,7 @@ from drake_screw.bandits.cell import Cell, cell_number
 from drake_screw.bandits.mixture import coverage_bound
 from drake_screw.bandits.strategies import STRATEGIES, make_strategy
 from drake_screw.bandits.tree import CellPull, CertifyOrSplit, TreeVerdict
-from drake_screw.bandits.verdict import BanditError, Goal, Pull, Strategy, Verdict
+from drake_screw.bandits.verdict import BanditError, Goal, OfFixedSize, Pull, Strategy, Verdict
 
 __all__ = [
     "STRATEGIES",
@@ -13,6 +13,7 @@ __all__ = [
     "CellPull",
     "CertifyOrSplit",
     "Goal",
+    "OfFixedSize",
     "Pull",
     "Strategy",
     "TreeVerdict",

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import betainc, betaincc, betainccinv, betaincinv
 
 from drake_screw.bandits.conclusion import conclude
 from drake_screw.bandits.spending import attempt_delta, look_delta
@@ -19,22 +19,22 @@ from drake_screw.typing import Array
 
 def at_most(n: Array, s: Array, p: float) -> Array:
     """P(Binomial(n, p) <= s)."""
-    return np.where(s >= n, 1.0, betaincc(s + 1.0, np.maximum(n - s, 0.5), p))
+    return np.where(s >= n, 1.0, scipy.special.betaincc(s + 1.0, np.maximum(n - s, 0.5), p))
 
 
 def at_least(n: Array, s: Array, p: float) -> Array:
     """P(Binomial(n, p) >= s)."""
-    return np.where(s <= 0, 1.0, betainc(np.maximum(s, 0.5), n - s + 1.0, p))
+    return np.where(s <= 0, 1.0, scipy.special.betainc(np.maximum(s, 0.5), n - s + 1.0, p))
 
 
 def upper_bound(n: Array, s: Array, alpha: ArrayLike) -> Array:
     """The p with P(Binomial(n, p) <= s) = alpha (Clopper and Pearson, Biometrika 1934)."""
-    return np.where(s >= n, 1.0, betainccinv(s + 1.0, np.maximum(n - s, 0.5), alpha))
+    return np.where(s >= n, 1.0, scipy.special.betainccinv(s + 1.0, np.maximum(n - s, 0.5), alpha))
 
 
 def lower_bound(n: Array, s: Array, alpha: ArrayLike) -> Array:
     """The p with P(Binomial(n, p) >= s) = alpha."""
-    return np.where(s <= 0, 0.0, betaincinv(np.maximum(s, 0.5), n - s + 1.0, alpha))
+    return np.where(s <= 0, 0.0, scipy.special.betaincinv(np.maximum(s, 0.5), n - s + 1.0, alpha))
 
 
 @dataclass(frozen=True)

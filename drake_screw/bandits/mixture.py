@@ -17,8 +17,8 @@ Everything is computed in logarithms, for any n, and broadcasts over n and s.
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import betainc, betaln, expit, logit
 
 from drake_screw.typing import Array
 
@@ -58,10 +58,10 @@ def ln_e_clear(n: ArrayLike, s: ArrayLike, t: ArrayLike) -> Array:
     failures = np.asarray(s, dtype=float)
     successes = np.asarray(n, dtype=float) - failures
     a, b = failures + 0.5, successes + 0.5
-    share = betainc(a, b, x)
+    share = scipy.special.betainc(a, b, x)
     prior = np.log(2.0 * np.arcsin(np.sqrt(x)))
     with np.errstate(divide="ignore"):
-        value = np.log(share) + betaln(a, b) - prior
+        value = np.log(share) + scipy.special.betaln(a, b) - prior
     value = value - failures * np.log(x) - successes * np.log1p(-x)
     tiny = share < _SMALLEST
     if tiny.any():
@@ -99,15 +99,15 @@ def _upper_logit(n: Array, s: Array, c: float) -> Array:
     f = n - s
     some = f > 0.0
     whole = np.maximum(n, 1.0)
-    constant = betaln(s + 0.5, f + 0.5) - np.log(np.pi) - c
+    constant = scipy.special.betaln(s + 0.5, f + 0.5) - np.log(np.pi) - c
     x = -constant / np.where(some, f, 1.0)
     mean = s / whole
     slack = whole * (_p_log_p(mean) + _p_log_p(1.0 - mean)) - constant
     pinsker = mean + np.sqrt(0.5 * slack / whole)
     inside = some & (pinsker < 1.0)
-    x = np.where(inside, np.minimum(x, logit(np.where(inside, pinsker, 0.5))), x)
+    x = np.where(inside, np.minimum(x, scipy.special.logit(np.where(inside, pinsker, 0.5))), x)
     for _ in range(100):
-        slope = n * expit(x) - s
+        slope = n * scipy.special.expit(x) - s
         rising = some & (slope > 0.0)
         excess = constant - s * x + n * np.logaddexp(0.0, x)
         step = np.where(rising, excess / np.where(rising, slope, 1.0), 0.0)
@@ -137,7 +137,7 @@ def confidence_interval(n: ArrayLike, s: ArrayLike, c: float) -> tuple[Array, Ar
     """
     samples, failures = np.broadcast_arrays(np.asarray(n, float), np.asarray(s, float))
     ends = _upper_logit(np.stack([samples, samples]), np.stack([samples - failures, failures]), c)
-    return expit(-ends[0]), expit(ends[1])
+    return scipy.special.expit(-ends[0]), scipy.special.expit(ends[1])
 
 
 def coverage_bound(n: ArrayLike, s: ArrayLike, delta: float) -> float:
@@ -167,10 +167,10 @@ def coverage_bound(n: ArrayLike, s: ArrayLike, delta: float) -> float:
         return 0.0
 
     def excess(x: float) -> float:
-        return float(ln_e_clear(samples, failures, expit(x)).min()) + np.log(delta)
+        return float(ln_e_clear(samples, failures, scipy.special.expit(x)).min()) + np.log(delta)
 
-    low = logit(np.max((failures + 1e-9) / (samples + 1e-9)))
+    low = scipy.special.logit(np.max((failures + 1e-9) / (samples + 1e-9)))
     high = low + 1.0
     while excess(high) < 0.0:
         high += high - low
-    return float(expit(-brentq(excess, low, high, xtol=1e-12)))
+    return float(scipy.special.expit(-brentq(excess, low, high, xtol=1e-12)))

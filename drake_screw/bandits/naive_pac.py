@@ -61,6 +61,11 @@ class NaivePac:
     goal: Goal
     spend: bool = False
 
+    def total(self, K: int, *, attempt: int) -> int:
+        """How many samples a round takes, of all regions together."""
+        delta = attempt_delta(self.goal.delta, attempt, spend=self.spend)
+        return K * sample_size(K, self.goal.epsilon, delta)
+
     def decide(self, pull: Pull, K: int, *, attempt: int) -> Verdict:
         """Runs one round; see `Strategy.decide`."""
         goal = self.goal

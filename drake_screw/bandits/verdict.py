@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -113,6 +113,15 @@ class Verdict:
     def total_samples(self) -> int:
         """Samples drawn in all regions together."""
         return int(self.samples.sum())
+
+
+@runtime_checkable
+class OfFixedSize(Protocol):
+    """A strategy of which one knows beforehand how many samples a round takes."""
+
+    def total(self, K: int, *, attempt: int) -> int:
+        """Of all K regions together; takes what `Strategy.decide` does."""
+        ...
 
 
 class Strategy(Protocol):

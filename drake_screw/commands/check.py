@@ -27,6 +27,11 @@ def check(
     Reads all its files; finds whatever would make the run fail on its input.
     """
     output = Output(json)
-    from drake_screw.assembly.preview import preview
+    from drake_screw.commands.countdown import Countdown
 
-    output.present(preview(chosen_scenario(scenario, set_, model)))
+    loaded = chosen_scenario(scenario, set_, model)
+    with Countdown(output.console) as shown:
+        from drake_screw.assembly.preview import preview
+
+        found = preview(loaded, shown)
+    output.present(found)

@@ -33,14 +33,20 @@ def compare(
     output = Output(json)
     check_page(html, json)
     from drake_screw.commands.compare_console import show_comparison
-    from drake_screw.runs.comparison import compare_runs, open_runs
+    from drake_screw.commands.countdown import Countdown
+    from drake_screw.steps import Step
 
-    opened = open_runs(runs)
-    comparison = compare_runs(opened)
-    if html is not None:
-        from drake_screw.web.compare_page import write_compare_page
+    with Countdown(output.console) as shown:
+        from drake_screw.runs.comparison import compare_runs, open_runs
 
-        write_compare_page(opened, comparison, html)
+        opened = open_runs(runs, shown)
+        shown(Step("comparing"))
+        comparison = compare_runs(opened)
+        if html is not None:
+            from drake_screw.web.compare_page import write_compare_page
+
+            shown(Step("drawing maps"))
+            write_compare_page(opened, comparison, html)
     show_comparison(comparison, output)
     if html is not None:
         output.say(f"written: {html}")

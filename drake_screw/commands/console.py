@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.panel import Panel
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
 
@@ -23,7 +22,7 @@ from drake_screw.acquisition import (
     RoundStarted,
 )
 from drake_screw.bandits import Verdict
-from drake_screw.commands.countdown import Pace
+from drake_screw.commands.countdown import Pace, shown_progress
 from drake_screw.runs.narration import describe
 from drake_screw.runs.summary import RunSummary
 from drake_screw.tasks import Regions
@@ -46,7 +45,7 @@ class RunConsole:
 
     def __init__(self, console: Console, regions: Regions, *, quiet: bool = False) -> None:
         self._regions, self._quiet = regions, quiet
-        self._live = _progress(console, hidden=quiet)
+        self._live = shown_progress(console, hidden=quiet)
         self._task = self._live.add_task("starting", total=None, detail="")
         self._terminal, self._pace = console.is_terminal, Pace()
 
@@ -62,7 +61,7 @@ class RunConsole:
         """Show an event."""
         match event:
             case RegionsEvaluated():
-                self._live.update(self._task, detail=detail(event))
+                self._live.update(self._task, detail=detail(event, self._pace))
             case InstancesExecuted():
                 words = f"executed {self._pace.of(event.done, event.total)}"
                 self._live.update(self._task, detail=words)
@@ -135,10 +134,11 @@ def round_table(verdict: Verdict, regions: Regions) -> Table:
     return table
 
 
-def detail(event: RegionsEvaluated) -> str:
-    """How far a round is, on one line."""
+def detail(event: RegionsEvaluated, pace: Pace) -> str:
+    """How far a round is, on one line; with the time left where its size is known."""
     rates = event.failures / np.maximum(event.samples, 1)
-    drawn = f"{event.samples.sum():>9,} instances, "
+    done = int(event.samples.sum())
+    drawn = f"{done:>9,} instances, " if event.total is None else f"{pace.of(done, event.total)}, "
     if len(rates) == 1:
         return f"{drawn}{event.failures[0]:,} failures"
     worst = int(np.argmax(rates))
@@ -148,16 +148,3 @@ def detail(event: RegionsEvaluated) -> str:
 def _bar(estimates: NDArray[np.float64], region: int) -> str:
     share = float(np.nan_to_num(estimates[region]))
     return "█" * int(np.ceil(8 * share)) if share > 0 else ""
-
-
-def _progress(console: Console, *, hidden: bool) -> Progress:
-    return Progress(
-        SpinnerColumn(),
-        TextColumn("{task.description}"),
-        BarColumn(bar_width=12),
-        TextColumn("{task.fields[detail]}"),
-        TimeElapsedColumn(),
-        console=console,
-        transient=True,
-        disable=hidden or not console.is_terminal,
-    )

@@ -11,11 +11,13 @@ from drake_screw.commands.options import (
     JsonOption,
     ModelOption,
     ScenarioArgument,
+    SchedulerOption,
     SetOption,
     VerboseOption,
+    chosen_cluster,
     chosen_scenario,
 )
-from drake_screw.commands.output import Output
+from drake_screw.commands.output import Output, check_writable
 
 EXAMPLE = (
     "drake-screw evaluate pouring --demonstrations demos --instances places.csv "
@@ -31,13 +33,20 @@ def evaluate(
     instances: Annotated[
         Path,
         typer.Option(
-            metavar="CSV",
-            help="Columns x, y, yaw, z, roll, pitch, as far as they vary; of several objects "
-            "cup.x, cup.y, ...; m and rad.",
+            metavar="FILE",
+            help="CSV (.csv, .csv.gz) or .parquet, of any length. Columns x, y, yaw, z, roll, "
+            "pitch, as far as they vary; of several objects cup.x, cup.y, ...; m and rad.",
         ),
     ],
-    output: Annotated[Path, typer.Option(metavar="CSV", help="Where to write the outcomes.")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            metavar="FILE",
+            help="Where to write the outcomes: .csv, .csv.gz or .parquet.",
+        ),
+    ],
     model: ModelOption = None,
+    scheduler: SchedulerOption = None,
     set_: SetOption = None,
     json: JsonOption = None,
     verbose: VerboseOption = False,
@@ -46,10 +55,17 @@ def evaluate(
 
     The output has a column for each demonstration; its cells are 0:0 for success, s:j failed in
     screw segment s at the limit of joint j (both counted from 1), s:n unreachable, s:c collision.
-    Which two bodies touch stands in a column of its own.
+    Which two bodies touch stands in a column of its own. Tables may be longer than memory: every
+    row is looked at before planning begins, and the output appears when it is whole.
     """
     out = Output(json)
+    check_writable(output, "--output")
+    from drake_screw.commands.countdown import Countdown
     from drake_screw.runs.outcome_table import tabulate_outcomes
 
     loaded = chosen_scenario(scenario, set_, model)
-    out.present(tabulate_outcomes(loaded, demonstrations, instances, output))
+    with chosen_cluster(scheduler, out) as cluster, Countdown(out.console) as shown:
+        found = tabulate_outcomes(
+            loaded, demonstrations, instances, output, tell=shown, cluster=cluster
+        )
+    out.present(found)

@@ -10,8 +10,10 @@ from drake_screw.commands.instance_option import instance_option, parse_instance
 from drake_screw.commands.options import (
     JsonOption,
     RunArgument,
+    SchedulerOption,
     VerboseOption,
     WorkersOption,
+    chosen_workers,
 )
 from drake_screw.commands.output import Output
 from drake_screw.errors import DrakeScrewError
@@ -41,6 +43,7 @@ def execute(
     host: Annotated[str, typer.Option(help="Address on which that page listens.")] = "localhost",
     port: Annotated[int | None, typer.Option(help="Port of the page. Default: a free one.")] = None,
     workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
     json: JsonOption = None,
     verbose: VerboseOption = False,
 ) -> None:
@@ -69,6 +72,7 @@ def execute(
         ("--json", json),
         ("--per-region", per_region),
         ("--workers", workers),
+        ("--scheduler", scheduler),
         ("--free-objects", free_objects or None),
     )
     if live and any(value is not None for _, value in given):
@@ -91,14 +95,17 @@ def execute(
         done_live = execute_live(run, instance=place, host=host, port=port, announce=output.say)
         raise typer.Exit(0 if done_live else 1)
     count = 2 if per_region is None else per_region
-    with Countdown("executed", output.console) as countdown:
+    with (
+        chosen_workers(workers, scheduler, output) as shared,
+        Countdown(output.console, at_once=True) as countdown,
+    ):
         done = executions.execute(
             run,
             per_region=count,
             instance=place,
-            workers=workers,
+            workers=shared,
             free_objects=free_objects,
-            progress=countdown,
+            tell=countdown,
         )
     output.present(done)
     raise typer.Exit(0 if done.summary.flawless else 1)

@@ -35,6 +35,13 @@ def export(
 ) -> None:
     """Write a plan as a trajectory that the robot can play."""
     place = parse_instance(instance)
-    from drake_screw.runs.trajectory import write_trajectory
+    from drake_screw.commands.countdown import Countdown
+    from drake_screw.steps import Step
 
-    Output().present(write_trajectory(run, place, format, output))
+    out = Output()
+    with Countdown(out.console) as shown:
+        from drake_screw.runs.trajectory import write_trajectory
+
+        shown(Step("planning"))
+        written = write_trajectory(run, place, format, output)
+    out.present(written)

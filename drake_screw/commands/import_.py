@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,9 +16,6 @@ if TYPE_CHECKING:
     from drake_screw.recordings import Understood
 
 EXAMPLE = "drake-screw import log.csv --output recordings --object bowl=0.9,0.1"
-
-_LARGE = 20_000_000
-"""bytes, of files whose reading is shown."""
 
 
 def import_(
@@ -85,20 +81,34 @@ def import_(
         raise DrakeScrewError(
             "no --output", remedy="Give the folder to write to; or --dry-run, to look only."
         )
-    from drake_screw.assembly.importing import read_recordings, write_library
-    from drake_screw.assembly.setup import Setup
+    from drake_screw.commands.countdown import Countdown
     from drake_screw.recordings import Mapping, read_mapping
     from drake_screw.recordings.places import parse_objects
+    from drake_screw.steps import Step
 
     objects = parse_objects(object_ or [])
     said = read_mapping(mapping) if mapping else Mapping()
     said = said.with_(
         format=format, rate=rate, episodes=episodes, objects={**said.objects, **objects} or None
     )
-    setup = Setup(chosen_scenario(scenario, set_, model))
+    loaded = chosen_scenario(scenario, set_, model)
     out = Output()
-    with _progress(out) as progress:
-        found = read_recordings(source, setup, said, objects_needed=not dry_run, progress=progress)
+    with Countdown(out.console) as shown:
+        from drake_screw.assembly.importing import read_recordings, write_library
+        from drake_screw.assembly.setup import Setup
+
+        def reading(file: Path) -> Callable[[float], None]:
+            shown(Step(f"reading {file.name}"))
+
+            def read(part: float) -> None:
+                shown(Step(f"reading {file.name}", part, 1.0))
+                if part >= 1.0:
+                    shown(Step(f"making out {file.name}"))
+
+            return read
+
+        setup = Setup(loaded)
+        found = read_recordings(source, setup, said, objects_needed=not dry_run, progress=reading)
     for each in found:
         _say(each, out)
     if dry_run:
@@ -106,7 +116,9 @@ def import_(
         out.say(found[0].mapping.text().rstrip())
         return
     assert output is not None
-    for folder in write_library(found, output):
+    with Countdown(out.console) as shown:
+        folders = write_library(found, output, shown)
+    for folder in folders:
         out.say(f"written: {folder}")
     out.say(f"  drake-screw look {output} --scenario {scenario}")
 
@@ -118,18 +130,3 @@ def _say(found: Understood, out: Output) -> None:
     for name, text in found.facts:
         out.say(f"  {'' if name == before else name:<{width}}  {text}")
         before = name
-
-
-@contextmanager
-def _progress(out: Output) -> Iterator[Callable[[Path], Callable[[float], None]]]:
-    from rich.progress import Progress
-
-    hidden = not out.console.is_terminal
-    with Progress(console=out.console, transient=True, disable=hidden) as shown:
-
-        def of(file: Path) -> Callable[[float], None]:
-            large = file.is_file() and file.stat().st_size > _LARGE
-            task = shown.add_task(f"reading {file.name}", total=1.0, visible=large)
-            return lambda part: shown.update(task, completed=part, visible=large and part < 1.0)
-
-        yield of

@@ -206,18 +206,28 @@ def _make(
     out: Output,
 ) -> None:
     """Find a scenario for a robot, try it, write it with its picture, and say so."""
-    from drake_screw.onboarding import assumptions, design, write_scenario
+    from drake_screw.commands.countdown import Countdown
+    from drake_screw.steps import Step
 
-    found = design(
-        read,
-        wanted_arm=arm,
-        choose=_ask if sys.stdin.isatty() else None,
-        task=task,
-        table_height=table_height,
-        incomplete_shapes=incomplete_shapes,
-        say=out.say,
-    )
-    picture = write_scenario(found, file, f"drake-screw {' '.join(sys.argv[1:])}")
+    with Countdown(out.console) as shown:
+        from drake_screw.onboarding import assumptions, design, write_scenario
+
+        def ask(arms: Sequence[FoundArm]) -> str:
+            with shown.aside():
+                return _ask(arms)
+
+        shown(Step("looking for a scenario"))
+        found = design(
+            read,
+            wanted_arm=arm,
+            choose=ask if sys.stdin.isatty() else None,
+            task=task,
+            table_height=table_height,
+            incomplete_shapes=incomplete_shapes,
+            say=out.say,
+        )
+        shown(Step("trying it"))
+        picture = write_scenario(found, file, f"drake-screw {' '.join(sys.argv[1:])}")
     out.say("assumed:")
     for line in assumptions(found):
         out.say(f"  {line}")

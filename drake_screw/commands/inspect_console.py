@@ -10,8 +10,10 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from drake_screw.commands.countdown import Countdown
 from drake_screw.runs.reader import RunReader
 from drake_screw.runs.run import open_run
+from drake_screw.steps import Step
 from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.palette import OUTCOME_NAMES
 from drake_screw.web.inspector_page import save_page, serve
@@ -46,10 +48,14 @@ def inspect_run(
         ScenarioError: there is no such round or instance.
         DrakeScrewError: the page cannot be served there, or written.
     """
-    reader = open_run(run).reader
-    first = select(reader, reader.check_round(round), instance)
+    with Countdown(console) as shown:
+        shown(Step("reading the run"))
+        reader = open_run(run).reader
+        first = select(reader, reader.check_round(round), instance)
+        if html is not None:
+            shown(Step("drawing the instance"))
+            page = save_page(reader, first, html)
     if html is not None:
-        page = save_page(reader, first, html)
         print_instance(reader, first, console)
         console.print(f"written: {page}, its numbers beside it (.csv, .json)", soft_wrap=True)
         return

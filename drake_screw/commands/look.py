@@ -51,19 +51,21 @@ def look(
     """
     output = Output(json)
     check_page(html, json)
+    from drake_screw.commands.countdown import Countdown
     from drake_screw.commands.look_console import chosen_for, show_looks
 
     name, why = chosen_for(recording, scenario)
     loaded = chosen_scenario(name, set_, model)
-    from drake_screw.assembly.looking import look_at_path
-    from drake_screw.assembly.setup import Setup
+    with Countdown(output.console) as shown:
+        from drake_screw.assembly.looking import look_at_path
+        from drake_screw.assembly.setup import Setup
 
-    looks = look_at_path(Setup(loaded), recording)
-    summary = looks.summary
-    if html is not None:
-        from drake_screw.web.look_page import write_look_page
+        looks = look_at_path(Setup(loaded), recording, shown)
+        summary = looks.summary
+        if html is not None:
+            from drake_screw.web.look_page import write_look_page
 
-        write_look_page(looks, html)
+            write_look_page(looks, html, shown)
     show_looks(summary, why, output)
     if html is not None:
         output.say(f"written: {html}")

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from drake_screw.commands.log import set_up_logging
-from drake_screw.errors import DrakeScrewError
+from drake_screw.errors import DrakeScrewError, counted
 
 if TYPE_CHECKING:
+    from drake_screw.commands.output import Output
     from drake_screw.scenario.schema import Scenario
+    from drake_screw.sharing import Executor, Workers
 
 _log = logging.getLogger(__name__)
 
@@ -49,6 +52,12 @@ DemonstrationsOption = Annotated[
 SeedOption = Annotated[int | None, typer.Option(help="Seed of all random draws.")]
 WorkersOption = Annotated[
     int | None, typer.Option(help="Processes. Default: all processors.", min=1)
+]
+SchedulerOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS", help="Share the work out on a Dask cluster, as in tcp://HOST:8786."
+    ),
 ]
 JsonOption = Annotated[
     str | None,
@@ -103,6 +112,48 @@ def chosen_scenario(
     loaded = load_scenario(scenario, overrides)
     _log.debug("scenario %s", loaded.source)
     return loaded if model is None else swap_model(loaded, model)
+
+
+@contextmanager
+def chosen_workers(workers: int | None, scheduler: str | None, out: Output) -> Iterator[Workers]:
+    """A context with those that a command line shares work out on.
+
+    Args:
+        workers: how many processes of this machine; all processors if None.
+        scheduler: the address of a Dask scheduler, whose workers are taken then.
+        out: is told how many they are.
+
+    Raises:
+        DrakeScrewError: both are given, or the cluster cannot be used.
+    """
+    if scheduler is not None and workers is not None:
+        raise DrakeScrewError(
+            "--workers are processes of this machine, and --scheduler brings its own",
+            remedy="Give one of them.",
+        )
+    with chosen_cluster(scheduler, out) as cluster:
+        yield workers if cluster is None else cluster
+
+
+@contextmanager
+def chosen_cluster(scheduler: str | None, out: Output) -> Iterator[Executor | None]:
+    """A context with the workers of a Dask scheduler; None where none is given.
+
+    Args:
+        scheduler: its address.
+        out: is told how many they are.
+
+    Raises:
+        DrakeScrewError: the cluster cannot be used.
+    """
+    if scheduler is None:
+        yield None
+        return
+    from drake_screw.sharing.cluster import cluster
+
+    with cluster(scheduler) as joined:
+        out.say(f"shared out on {counted(joined.width, 'worker thread')} at {scheduler}")
+        yield joined
 
 
 def check_resumed_alone(kind: str, *others: object) -> None:

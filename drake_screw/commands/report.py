@@ -34,19 +34,25 @@ def report(
     """
     output = Output(json)
     from drake_screw.commands.console import show_event, show_summary
-    from drake_screw.runs.pictures import plane_of
-    from drake_screw.runs.redrawing import redraw
-    from drake_screw.runs.run import open_run
-    from drake_screw.runs.summary import summarize_run
-    from drake_screw.web.report_page import write_report
+    from drake_screw.commands.countdown import Countdown
+    from drake_screw.steps import Step
 
-    job = open_run(run)
-    plane = None if axes is None else plane_of(job.setup, axes.split(","))
-    events = list(job.replay())
-    summary = summarize_run(job)
-    for event in events:
-        show_event(event, job.setup.regions, output.console)
-    show_summary(summary, output.console)
-    redraw(job.reader, plane, svg=svg)
-    output.say(f"written: {write_report(job.reader)}")
+    with Countdown(output.console) as shown:
+        from drake_screw.runs.pictures import plane_of
+        from drake_screw.runs.redrawing import redraw
+        from drake_screw.runs.run import open_run
+        from drake_screw.runs.summary import summarize_run
+        from drake_screw.web.report_page import write_report
+
+        shown(Step("reading the run"))
+        job = open_run(run)
+        plane = None if axes is None else plane_of(job.setup, axes.split(","))
+        events = list(job.replay())
+        summary = summarize_run(job)
+        for event in events:
+            show_event(event, job.setup.regions, output.console)
+        show_summary(summary, output.console)
+        redraw(job.reader, plane, svg=svg, tell=shown)
+        written = write_report(job.reader, tell=shown)
+    output.say(f"written: {written}")
     output.write(summary)

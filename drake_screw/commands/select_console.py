@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    Progress,
-    SpinnerColumn,
-    TextColumn,
-    TimeElapsedColumn,
-)
 from rich.table import Table
 from rich.text import Text
 
 from drake_screw.acquisition import InstancesExecuted, RegionsEvaluated
 from drake_screw.commands.console import certificate_panel, detail, round_table
-from drake_screw.commands.countdown import Pace
+from drake_screw.commands.countdown import Countdown, Pace
 from drake_screw.commands.output import Output
 from drake_screw.runs.selection import RegionRate, Selection
-from drake_screw.runs.selection_events import Step, Tried
+from drake_screw.runs.selection_events import Tried
+from drake_screw.steps import Step
 
 
 class SelectConsole:
@@ -31,45 +25,29 @@ class SelectConsole:
     """
 
     def __init__(self, console: Console) -> None:
-        self._live = Progress(
-            SpinnerColumn(),
-            TextColumn("{task.description}"),
-            BarColumn(bar_width=12),
-            TextColumn("{task.fields[detail]}"),
-            TimeElapsedColumn(),
-            console=console,
-            transient=True,
-            disable=not console.is_terminal,
-        )
-        self._task = self._live.add_task("starting", total=None, detail="")
-        self._pace = Pace()
+        self._console, self._shown = console, Countdown(console)
+        self._attempt, self._pace = "", Pace()
 
     def __enter__(self) -> SelectConsole:
-        self._live.start()
+        self._shown.__enter__()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._live.stop()
+        self._shown.__exit__()
 
     def __call__(self, event: Step | RegionsEvaluated | InstancesExecuted | Tried) -> None:
         """Show an event."""
         match event:
             case Step():
-                self._live.update(
-                    self._task,
-                    description=event.words,
-                    completed=event.done,
-                    total=event.total,
-                    detail="",
-                )
+                self._attempt = event.words
+                self._shown(event)
             case InstancesExecuted():
-                words = f"executed {self._pace.of(event.done, event.total)}"
-                self._live.update(self._task, detail=words)
+                self._shown(Step(f"{self._attempt}, executed", event.done, event.total))
             case RegionsEvaluated():
-                self._live.update(self._task, detail=detail(event))
+                self._shown.detail(self._attempt, detail(event, self._pace))
             case Tried():
-                self._live.console.print(Text(_tried(event)))
-                self._live.console.print(round_table(event.verdict, event.regions))
+                self._console.print(Text(_tried(event)))
+                self._console.print(round_table(event.verdict, event.regions))
 
 
 def show_selection(found: Selection, budget: int, output: Output) -> None:

@@ -4,15 +4,41 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
 
 INTERRUPTED = 130
 """Exit code."""
 
 _ENDINGS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Verbs(TyperGroup):
+    """Verbs that say in a line that they were interrupted, where they have nothing better to say.
+
+    A question at which Ctrl-C or Ctrl-D is pressed is interrupted, too.
+    """
+
+    def invoke(self, ctx: Any) -> Any:
+        """Invokes the verb that the command line names."""
+        try:
+            return super().invoke(ctx)
+        except (KeyboardInterrupt, typer.Abort):
+            pass
+        except typer.Exit:
+            raise  # by a verb that had something to say
+        except Exception:
+            if not any(signal.getsignal(each) is _end for each in _ENDINGS):
+                raise  # else it is what native code made of the interruption: an ImportError, say
+        print("interrupted", file=sys.stderr)
+        raise typer.Exit(INTERRUPTED)
 
 
 @contextmanager

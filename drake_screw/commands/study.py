@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -12,12 +13,14 @@ from drake_screw.commands.options import (
     JsonOption,
     ModelOption,
     ScenarioUnlessResumed,
+    SchedulerOption,
     SeedOption,
     SetOption,
     VerboseOption,
     WorkersOption,
     check_resumed_alone,
     chosen_scenario,
+    chosen_workers,
 )
 from drake_screw.commands.output import Output
 from drake_screw.commands.signals import INTERRUPTED
@@ -42,13 +45,15 @@ def study(
         Path | None, typer.Option(metavar="STUDY", help="Carry an interrupted study on.")
     ] = None,
     workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
     set_: SetOption = None,
     json: JsonOption = None,
     verbose: VerboseOption = False,
 ) -> None:
     """Measure how many demonstrations a certificate takes.
 
-    For several numbers of regions; every run has fresh samples.
+    For several numbers of regions; every run has fresh samples. Runs are shared out among
+    processes, or on a cluster (docs/cluster.md), which makes no difference to the result.
     """
     if resume is not None:
         check_resumed_alone("study", scenario, demonstrations, model, seed, output, set_)
@@ -60,12 +65,14 @@ def study(
     if resume is None:
         numbers = numbers_of_regions(regions)
         loaded = chosen_scenario(scenario, set_, model, seed=seed, demonstrations=demonstrations)
-        job = new_study(loaded, numbers, runs, output)
+        begin = partial(new_study, loaded, numbers, runs, output)
     else:
-        job = open_study(resume)
-    try:
-        found = show_study(job, out.console, workers=workers)
-    except KeyboardInterrupt:
-        out.say(f"interrupted; carry on with: drake-screw study --resume {job.path}")
-        raise typer.Exit(INTERRUPTED) from None
+        begin = partial(open_study, resume)
+    with chosen_workers(workers, scheduler, out) as shared:
+        job = begin()
+        try:
+            found = show_study(job, out.console, workers=shared)
+        except KeyboardInterrupt:
+            out.say(f"interrupted; carry on with: drake-screw study --resume {job.path}")
+            raise typer.Exit(INTERRUPTED) from None
     out.write(found)

@@ -7,17 +7,18 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from drake_screw.sharing import Workers
 from drake_screw.studies.findings import Findings, findings
 from drake_screw.studies.study import Study
 
 
-def show_study(study: Study, console: Console, *, workers: int | None = None) -> Findings:
+def show_study(study: Study, console: Console, *, workers: Workers = None) -> Findings:
     """Carry a study out, showing how far it is and what it found.
 
     Args:
         study: new or opened.
         console: to write to; live bars only where it is a terminal.
-        workers: processes; as many as processors if None.
+        workers: processes, as many as processors if None; or a cluster.
     """
     live = Progress(
         TextColumn("{task.description}"),

@@ -177,7 +177,9 @@ def _in_order(
         for m in range(M):
             least = min(least, worst[m])
             worst[m] = max(least, cost[k, m])
-    bottleneck = worst.min()
+    bottleneck = np.inf
+    for m in range(M):
+        bottleneck = min(bottleneck, worst[m])
     total = np.zeros(M)
     origin = np.empty((n, M), dtype=np.int32)
     for k in range(n):
@@ -188,7 +190,10 @@ def _in_order(
             origin[k, m] = where
             total[m] = least + cost[k, m] ** 2 if cost[k, m] <= bottleneck else np.inf
     chosen = np.empty(n, dtype=np.int64)
-    at = np.argmin(total)
+    at = 0
+    for m in range(M):
+        if total[m] < total[at]:
+            at = m
     for k in range(n - 1, -1, -1):
         chosen[k] = at
         at = origin[k, at]

@@ -244,8 +244,11 @@ def _thin(p: Array, q: Array, spacing: float, turn_spacing: float) -> NDArray[np
     least = np.cos(0.5 * turn_spacing) if turn_spacing < np.pi else -1.0
     kept = [0]
     for i in range(1, len(p)):
-        k = kept[-1]
-        cosine = abs((q[i] * q[k]).sum())
-        if ((p[i] - p[k]) ** 2).sum() >= spacing**2 or cosine <= least:
+        k, square, cosine = kept[-1], 0.0, 0.0
+        for c in range(3):
+            square += (p[i, c] - p[k, c]) ** 2
+        for c in range(4):
+            cosine += q[i, c] * q[k, c]
+        if square >= spacing**2 or abs(cosine) <= least:
             kept.append(i)
     return np.array(kept)

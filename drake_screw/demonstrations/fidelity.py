@@ -152,11 +152,17 @@ def _turn(q: Array, least: float) -> float:
     total, farthest, angle = 0.0, 0, 0.0
     anchor = 0
     for i in range(1, len(q)):
-        away = 2.0 * np.arccos(min(1.0, abs((q[anchor] * q[i]).sum())))
+        away = _apart(q[anchor], q[i])
         if away >= angle:
             farthest, angle = i, away
-        elif 2.0 * np.arccos(min(1.0, abs((q[farthest] * q[i]).sum()))) > least:
+        elif _apart(q[farthest], q[i]) > least:
             total += angle
             anchor, farthest = farthest, i
-            angle = 2.0 * np.arccos(min(1.0, abs((q[anchor] * q[i]).sum())))
+            angle = _apart(q[anchor], q[i])
     return total + angle
+
+
+@cached_njit()
+def _apart(a: Array, b: Array) -> float:
+    cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+    return 2.0 * np.arccos(min(1.0, abs(cosine)))

@@ -49,7 +49,8 @@ def check_object_poses(
         RecordingError: an object is nowhere near, for its unit or frame probably.
     """
     p = X_WE[:, :3, 3]
-    away = np.linalg.norm(p[:, None] - X_WO[None, :, :3, 3], axis=-1).min(axis=0)
+    with np.errstate(over="ignore"):
+        away = np.linalg.norm(p[:, None] - X_WO[None, :, :3, 3], axis=-1).min(axis=0)
     nearest = int(np.argmin(away))
     wrong = int(np.argmax(away)) if away.max() > NOWHERE else nearest
     if away[wrong] > FAR and (away[wrong] > NOWHERE or wrong == nearest):
@@ -91,7 +92,8 @@ def _why(p_WO: Array, p_WE: Array, world: str) -> str:
     """The likely reason, by what would bring the object near the hand."""
 
     def near(place: Array) -> bool:
-        return bool(np.linalg.norm(p_WE - place, axis=1).min() <= NEAR)
+        with np.errstate(over="ignore"):
+            return bool(np.linalg.norm(p_WE - place, axis=1).min() <= NEAR)
 
     if near(p_WO / 1000.0) or np.abs(p_WO).max() > 50.0:
         return "It looks like millimetres: object poses are in metres."

@@ -31,7 +31,7 @@ class SegmentationConfig:
     Attributes:
         spacing: m, poses nearer than this to the one kept before are dropped.
         position_tolerance: m, allowed distance of the path from its screw.
-        rotation_tolerance: allowed distance of unit quaternions, |a - b|, from the screw.
+        rotation_tolerance: allowed distance of unit quaternions, ``|a - b|``, from the screw.
         min_progress: least change of the screw parameter from one pose to the next.
         region_of_interest: times the smallest distance of E to the object is near it.
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
 from drake_screw.tasks import Symmetry
 from drake_screw.typing import Array
@@ -53,7 +53,7 @@ class Noise:
         N, k, n = len(chance), len(symmetries), len(slides)
         if chance.shape[1] == 0:
             return np.zeros((N, k, 3)), np.zeros((N, n))
-        z = ndtri(np.maximum(chance, LEAST))
+        z = scipy.special.ndtri(np.maximum(chance, LEAST))
         yaws = [0.0 if _round(symmetry) else self.object_yaw for symmetry in symmetries]
         places = [[self.object_position, self.object_position, yaw] for yaw in yaws]
         offsets = np.where(slides, self.slide_offset, self.joint_offset)

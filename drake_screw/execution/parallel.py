@@ -8,13 +8,14 @@ from functools import partial
 
 import numpy as np
 
+from drake_screw.errors import ModelError
 from drake_screw.execution.allowed import Allowed, said
 from drake_screw.execution.simulate import Execution, simulate
 from drake_screw.execution.station import Station, build_station
 from drake_screw.execution.timing import TimedPlan, TimeLimits, time_plan
 from drake_screw.planning import Plan
-from drake_screw.processes import share_out
 from drake_screw.robot import ObjectConfig, ObstacleConfig, RobotConfig, TableConfig
+from drake_screw.sharing import Workers, share_out
 from drake_screw.typing import Array
 
 KEPT = 8  # of that many samples of a log, one comes back from another process
@@ -48,6 +49,7 @@ class StationConfig:
         limits: how fast plans are executed.
         free_objects: whether objects can be pushed.
         allowed: what an execution may do and be flawless.
+        model: hash of the robot's model that plans were made with; None where it does not matter.
     """
 
     robot: RobotConfig
@@ -57,6 +59,7 @@ class StationConfig:
     limits: TimeLimits = field(default_factory=TimeLimits)
     free_objects: bool = False
     allowed: Allowed = field(default_factory=Allowed)
+    model: str | None = None
 
     def build(self) -> Station:
         """The station."""
@@ -78,15 +81,25 @@ class Bench:
 
     @classmethod
     def of(cls, config: StationConfig) -> Bench:
-        """Built for this process."""
-        return cls(config, config.build())
+        """Built for this process.
+
+        Raises:
+            ModelError: the model cannot be read here, or is another one than plans were made with.
+        """
+        station = config.build()
+        if config.model not in (None, station.model):
+            raise ModelError(
+                "the robot's model is not the one that plans were made with",
+                file=config.robot.model,
+            )
+        return cls(config, station)
 
 
 def execute_all(
     config: StationConfig,
     jobs: Sequence[Job],
     *,
-    workers: int | None = None,
+    workers: Workers = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Execution, ...]:
     """Time and simulate plans.
@@ -94,14 +107,15 @@ def execute_all(
     Args:
         config: the station that each process builds once.
         jobs: what to do.
-        workers: number of processes; as many as processors if None, none but this one if 1.
+        workers: number of processes, as many as processors if None, none but this one if 1; or a
+            cluster.
         progress: called with how many are done and how many there are, at first with none.
 
     Returns:
         The execution of each job, in order, thinned out.
 
     Raises:
-        WorkerLost: a process was killed.
+        SharingError: processes were killed, or a cluster is lost.
     """
     tell = progress or (lambda done, total: None)
     tell(0, len(jobs))

@@ -68,6 +68,7 @@ class Station:
         offsets: source of what the arm's joints are beyond what its encoders say, (2n,).
         parked: (N,) the plant's positions, with the arm's joints at 0 and all others at rest.
         columns: (n,) the arm's joints among them.
+        model: hash of the robot's model as it was read.
     """
 
     diagram: Diagram
@@ -84,6 +85,7 @@ class Station:
     offsets: ConstantVectorSource
     parked: Array
     columns: Array
+    model: str
 
     @property
     def graphviz(self) -> str:
@@ -237,7 +239,7 @@ def build_station(
     diagram.set_name("station")
     return Station(
         diagram, plant, scene_graph, arm, follower, added.instances, bodies, free_objects,
-        measured, desired, pushed, offsets, parked, columns,
+        measured, desired, pushed, offsets, parked, columns, added.model.hash,
     )  # fmt: skip
 
 

@@ -15,7 +15,7 @@ from drake_screw.execution.allowed import said
 from drake_screw.execution.report import Deviation, ExecutionReport
 from drake_screw.execution.simulate import Execution
 from drake_screw.execution.status import Phase
-from drake_screw.tasks import WorkArea
+from drake_screw.tasks import WorkArea, column_names
 from drake_screw.typing import Array
 
 
@@ -54,11 +54,10 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
     segment, contacts name both bodies. Where the robot has several arms, one of the columns says
     which of them moved.
     """
-    places = [f"{area.objects[i].name}_{area.axes[j]}" for i, j in area.columns]
     several = any(trial.arm for trial in trials)
     header = [
         "region",
-        *places,
+        *column_names(area),
         "demonstration",
         *(["arm"] if several else []),
         "turned_rad",
@@ -71,7 +70,7 @@ def trials_csv(trials: Sequence[Trial], area: WorkArea) -> str:
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(header)
     for trial in trials:
-        place = [f"{trial.coordinates[i, j]:.6g}" for i, j in area.columns]
+        place = [f"{trial.coordinates[i, j]:.9g}" for i, j in area.columns]
         report = trial.report
         if report is None:
             said = ["no plan", "", trial.reason, *([""] * len(_MEASURES))]

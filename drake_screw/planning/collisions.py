@@ -17,7 +17,7 @@ from drake_screw.planning.plan_checker import PlanChecker
 from drake_screw.robot import ScrewChain, Workcell
 from drake_screw.typing import Array
 
-LONG = 10  # ways around that are announced before they are sought
+LONG = 10  # ways around that are announced, once, before they are sought
 
 _LOG = logging.getLogger(__name__)
 
@@ -43,6 +43,7 @@ class CollisionFreePlanner:
         self.planner = planner
         self.checker = PlanChecker(workcell, clearance)
         self.checked = planner.checked(self.checker.swept)
+        self._announced = False
         self.connects = bool(planner.others) and connection.available()
         if planner.others and not self.connects:
             connection.warn_of_its_absence()
@@ -139,7 +140,9 @@ class CollisionFreePlanner:
             touching[again, d] = within.success[:, 0]
         left = [(int(i), int(d)) for i, d in zip(*np.nonzero(touching), strict=True)]
         if len(left) >= LONG:
-            _LOG.info("looking for ways around what is touched, for %d plans", len(left))
+            level = logging.DEBUG if self._announced else logging.INFO
+            _LOG.log(level, "looking for ways around what is touched, for %d plans", len(left))
+            self._announced = True
         return left
 
     def _way_around(

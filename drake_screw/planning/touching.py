@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -91,18 +92,44 @@ def touching_bodies(
     return found or workcell.colliding_bodies(q, X_WO, clearance + NEARLY)[:1]
 
 
+class CollisionTally:
+    """Counts what touches, of outcomes that come bit by bit.
+
+    Args:
+        workcell: that they are of.
+    """
+
+    def __init__(self, workcell: Workcell) -> None:
+        self._workcell = workcell
+        self._failures = self._collisions = 0
+        self._pairs: Counter[int] = Counter()
+
+    def add(self, outcomes: Outcomes) -> None:
+        """Counts the failing instances of outcomes (N, D)."""
+        best = outcomes.best
+        collided = best.cause == Cause.COLLISION
+        self._failures += int((~best.success & (best.cause != Cause.NOT_TRIED)).sum())
+        self._collisions += int(collided.sum())
+        index, count = np.unique(best.pair[collided], return_counts=True)
+        self._pairs.update(dict(zip(index.tolist(), count.tolist(), strict=True)))
+
+    @property
+    def counts(self) -> CollisionCounts:
+        """Of all that were added."""
+        pairs: dict[str, int] = {}
+        known = len(self._workcell.pairs)
+        for index, count in sorted(self._pairs.items(), key=lambda item: (-item[1], item[0])):
+            if 0 <= index < known:
+                pair = pair_name(self._workcell.touching(index))
+                pairs[pair] = pairs.get(pair, 0) + count
+        return CollisionCounts(self._failures, self._collisions, pairs)
+
+
 def count_collisions(outcomes: Outcomes, workcell: Workcell) -> CollisionCounts:
     """Count what touches in the failing instances of outcomes (N, D)."""
-    best = outcomes.best
-    failed = ~best.success & (best.cause != Cause.NOT_TRIED)
-    collided = best.cause == Cause.COLLISION
-    index, count = np.unique(best.pair[collided], return_counts=True)
-    pairs: dict[str, int] = {}
-    for i in np.argsort(-count, kind="stable").tolist():
-        if 0 <= index[i] < len(workcell.pairs):
-            pair = pair_name(workcell.touching(int(index[i])))
-            pairs[pair] = pairs.get(pair, 0) + int(count[i])
-    return CollisionCounts(int(failed.sum()), int(collided.sum()), pairs)
+    tally = CollisionTally(workcell)
+    tally.add(outcomes)
+    return tally.counts
 
 
 def cut_short(plan: Plan, outcome: Outcomes) -> Plan:

@@ -10,6 +10,7 @@ from pydantic import Field, ValidationError
 
 from drake_screw.errors import RecordingError, ScenarioError, suggestion
 from drake_screw.scenario.block import Block
+from drake_screw.scenario.meanings import meanings
 from drake_screw.scenario.yaml_marks import Dumper, Place, locate, parse, plain
 
 FILE = "recording.yaml"
@@ -106,7 +107,7 @@ def read_mapping(file: Path) -> Mapping:
             message = f"{name}: unknown key"
             remedy: str | None = suggestion(name, list(Mapping.model_fields), "Keys")
         else:
-            known = Mapping.model_fields.get(name)
+            meaning = meanings(Mapping).get(name)
             message = f"{name or 'the file'}: {first['msg'].lower()}"
-            remedy = f"Meaning: {known.description}." if known and known.description else None
+            remedy = None if meaning is None else f"Meaning: {meaning}."
         raise RecordingError(message, remedy=remedy, file=file, line=place.line) from None

@@ -92,7 +92,7 @@ def objects_of(
             pose, how = found.X, f"by {place or f'frame:{frame}'}: {found.how}"
             notes.extend(found.notes)
         elif item.name in mapping.objects:
-            given = Given(item.name, mapping.objects[item.name])
+            given = Given(item.name, mapping.objects[item.name], raw.table.file)
             pose, how = given.pose(item.height if item.upright else None, hand)
         elif item.name in raw.X_WO:
             pose, how = raw.X_WO[item.name], "from the file"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -24,10 +25,12 @@ _POSE = re.compile(r"(.+),\s*(xyzw|wxyz):(.+)$")
 
 @dataclass(frozen=True)
 class Given:
-    """A place that was given for an object, as text or numbers."""
+    """A place that was given for an object of a recording, as text or numbers."""
 
     name: str
     place: object
+    file: Path | None = None
+    """of the recording"""
 
     def pose(self, z: float | None, hand: Callable[[float], Array]) -> tuple[Array, str]:
         """X_WO (4, 4), and how it was found, in words.
@@ -60,7 +63,7 @@ class Given:
         raise self._error(f"{len(numbers)} numbers")
 
     def _at_hand(self, found: re.Match[str], hand: Callable[[float], Array]) -> tuple[Array, str]:
-        time = float(found.group(1))
+        (time,) = self._numbers(found.group(1))
         shift = self._numbers(found.group(2)) if found.group(2) else [0.0, 0.0, 0.0]
         if len(shift) != 3:
             raise self._error(f"a shift by {len(shift)} numbers, where three are needed")
@@ -79,14 +82,15 @@ class Given:
 
     def _matrix(self, X: Array) -> Array:
         R = X[:3, :3]
-        fits = np.abs(R.T @ R - np.eye(3)).max() < 1e-3 and np.linalg.det(R) > 0.0
+        with np.errstate(over="ignore", invalid="ignore"):
+            fits = np.abs(R.T @ R - np.eye(3)).max() < 1e-3 and np.linalg.det(R) > 0.0
         if not fits or not np.allclose(X[3], [0, 0, 0, 1], atol=1e-6):
             raise self._error("a matrix that is not a pose (its last row is 0,0,0,1)")
         return normalized(X)
 
     def _numbers(self, place: object) -> list[float]:
-        parts = place.split(",") if isinstance(place, str) else np.ravel(np.array(place)).tolist()
         try:
+            parts = place.split(",") if isinstance(place, str) else np.ravel(np.array(place))
             numbers = [float(part) for part in parts]
         except ValueError as error:
             raise self._error(f"'{place}'") from error
@@ -95,7 +99,8 @@ class Given:
         return numbers
 
     def _error(self, found: str) -> RecordingError:
-        return RecordingError(f"object {self.name}: found {found}", remedy=FORMS)
+        message = f"object {self.name}: found {found}"
+        return RecordingError(message, remedy=FORMS, file=self.file)
 
 
 def parse_objects(words: list[str]) -> dict[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,7 @@ from drake_screw.robot.names import Instances, find_frame, find_joint
 from drake_screw.robot.screw_chain import ScrewChain
 from drake_screw.robot.velocities import assumed_in_words
 from drake_screw.robot.velocities import velocity_limits as resolved
+from drake_screw.robot.wrist import Wrist, wrist_of
 from drake_screw.screws import shift
 from drake_screw.screws.endless import is_endless, middles
 from drake_screw.typing import Array
@@ -201,6 +203,11 @@ class Arm:
         """
         least = self.margin(q).reshape(-1, self.n).min(axis=0)
         return int(np.argmin(comparable(least, self.upper - self.lower, self.slides)))
+
+    @cached_property
+    def wrist(self) -> Wrist | None:
+        """Shoulder, wrist and reach, where the arm has them; see `wrist_of`."""
+        return wrist_of(self.screw_chain())
 
     def screw_chain(self) -> ScrewChain:
         """The arm as a product of exponentials, read off the plant at q = 0."""

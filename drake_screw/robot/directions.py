@@ -22,9 +22,8 @@ LOOKED_AT = 32
 def jacobians(chain: ScrewChain, q: ArrayLike) -> Array:
     """(N, 6, n) of configurations (N, n): twists [w; v / LENGTH] in E, about E's origin."""
     q = np.asarray(q, dtype=float)
-    X_WE = chain.pose(q)
-    J = np.swapaxes(chain.jacobian(q), -1, -2)
-    J_WE = shift(J, X_WE[:, None, :3, 3])
+    X_WE, J = chain.pose_and_jacobian(q)
+    J_WE = shift(np.swapaxes(J, -1, -2), X_WE[:, None, :3, 3])
     R = X_WE[:, :3, :3]
     return np.swapaxes(np.concatenate([J_WE[..., :3] @ R, J_WE[..., 3:] @ R / LENGTH], -1), -1, -2)
 

@@ -11,10 +11,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from drake_screw.errors import ModelError
-from drake_screw.files import cache_folder, write_text
+from drake_screw.robot.kept_files import is_whole, keep_sealed, kept_folder
 from drake_screw.typing import Array
 
 CONVERTED = (".stl", ".dae", ".glb", ".ply", ".off")
@@ -26,7 +25,7 @@ MOST_FACES = 8_000
 CELLS = 128
 """Cells along the longest side of a mesh to be coarsened, to begin with."""
 
-_VERSION = "2"
+_VERSION = "3"
 """Of what is made of a mesh: a new number makes it all again."""
 
 _log = logging.getLogger(__name__)
@@ -51,7 +50,9 @@ def hull_file(file: Path) -> Path:
         ModelError: it cannot be read, or is flat.
     """
     kept = _kept(file, "hull")
-    if not kept.is_file():
+    if not is_whole(kept):
+        from scipy.spatial import ConvexHull, QhullError  # take long to import
+
         points = np.concatenate([part.vertices for part in _parts(file)])
         try:
             hull = ConvexHull(points)
@@ -60,7 +61,7 @@ def hull_file(file: Path) -> Path:
         number = np.full(len(points), -1)
         number[hull.vertices] = np.arange(len(hull.vertices))
         part = _Part(points[hull.vertices], number[hull.simplices], None)
-        write_text(kept, "".join(_lines([part])))
+        keep_sealed(kept, "".join(_lines([part])))
         _log.debug("hull of %s: %d corners", file, len(hull.vertices))
     return kept
 
@@ -72,7 +73,8 @@ def look_file(file: Path) -> Path:
         ModelError: it cannot be read.
     """
     kept = _kept(file, "look")
-    if not kept.is_file():
+    materials = kept.with_suffix(".mtl")
+    if not is_whole(kept) or (_has_materials(kept) and not is_whole(materials)):
         parts = _parts(file)
         share = MOST_FACES / max(sum(len(part.faces) for part in parts), 1)
         if share < 1.0:
@@ -80,8 +82,8 @@ def look_file(file: Path) -> Path:
         parts = [_merged(part) for part in parts]
         colors = [part.color for part in parts]
         if any(color is not None for color in colors):
-            write_text(kept.with_suffix(".mtl"), "".join(_materials(colors)))
-        write_text(kept, "".join(_lines(parts, kept.with_suffix(".mtl").name)))
+            keep_sealed(materials, "".join(_materials(colors)))
+        keep_sealed(kept, "".join(_lines(parts, materials.name)))
     return kept
 
 
@@ -93,9 +95,12 @@ def content_hash(file: Path) -> str:
 def _kept(file: Path, what: str) -> Path:
     text = f"{_VERSION}\0{what}\0{file.suffix.lower()}\0{content_hash(file)}"
     name = hashlib.sha256(text.encode()).hexdigest()[:32]
-    folder = cache_folder() / "meshes"
-    folder.mkdir(exist_ok=True)
-    return folder / f"{file.stem}_{name}.obj"
+    return kept_folder("meshes") / f"{file.stem}_{name}.obj"
+
+
+def _has_materials(look: Path) -> bool:
+    with look.open("rb") as lines:
+        return lines.readline().startswith(b"mtllib")
 
 
 def _parts(file: Path) -> list[_Part]:

@@ -13,10 +13,11 @@ from pathlib import Path
 from pydrake.multibody.parsing import PackageMap
 
 from drake_screw.errors import ModelError
-from drake_screw.files import cache_folder, file_hash, write_text
+from drake_screw.files import file_hash
 from drake_screw.robot.addresses import add_packages
 from drake_screw.robot.directives import is_directives
 from drake_screw.robot.included import mend_directives, mend_includes
+from drake_screw.robot.kept_files import holds, keep, kept_folder
 from drake_screw.robot.model_limits import check_joint_limits
 from drake_screw.robot.model_materials import mend_materials
 from drake_screw.robot.model_meshes import LeftOut, MeshesRead, make_absolute, read_meshes
@@ -200,9 +201,7 @@ def _stem(file: Path) -> str:
 
 
 def _kept(text: str, name: str) -> Path:
-    folder = cache_folder() / "models" / hashlib.sha256(text.encode()).hexdigest()[:32]
-    folder.mkdir(parents=True, exist_ok=True)
-    kept = folder / name
-    if not kept.is_file():
-        write_text(kept, text)
+    kept = kept_folder("models", hashlib.sha256(text.encode()).hexdigest()[:32]) / name
+    if not holds(kept, text):
+        keep(kept, text)
     return kept

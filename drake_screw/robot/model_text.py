@@ -19,6 +19,9 @@ SIZES = {
 OTHERS = ("mesh", "plane", "empty")
 """Shapes whose sizes are not numbers."""
 
+LARGEST = 1000.0
+"""m; queries of Drake that meet a larger shape may end the process."""
+
 HALF_AXES = ("a", "b", "c")
 """Of Drake's own ellipsoids, in place of radii."""
 
@@ -68,6 +71,9 @@ def _wrong(shape: ET.Element, sdf: bool) -> tuple[str, str] | None:
             return f"is {a_kind} without {name}", remedy
         if not all(length > 0.0 for length in _numbers(text)):
             return f"is {a_kind} with {name} {' '.join(text.split())}", remedy
+        if not all(length <= LARGEST for length in _numbers(text)):
+            found = f"is {a_kind} with {name} {' '.join(text.split())}, over {LARGEST:,.0f} m"
+            return found, "Lengths are in m."
     return None
 
 

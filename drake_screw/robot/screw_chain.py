@@ -20,7 +20,7 @@ class ScrewChain:
     Attributes:
         joint_names: n names, base to end effector.
         screws: (n, 6) the spatial twist [w; v] of each joint at q = 0, in W about its origin.
-            A revolute joint has |w| = 1; a prismatic one w = 0 and |v| = 1.
+            A revolute joint has ``|w| = 1``; a prismatic one ``w = 0`` and ``|v| = 1``.
         home: (4, 4) X_WE at q = 0.
         lower, upper: (n,) joint limits, rad or m; infinite where a joint has none.
     """
@@ -104,21 +104,29 @@ class ScrewChain:
 
     def pose(self, q: ArrayLike) -> Array:
         """Forward kinematics; q (..., n) rad or m to X_WE (..., 4, 4)."""
-        q = np.asarray(q, dtype=float)
-        X = np.broadcast_to(self.home, (*q.shape[:-1], 4, 4))
+        each = self._exponentials(q)
+        X = np.broadcast_to(self.home, (*each.shape[:-3], 4, 4))
         for i in reversed(range(self.n)):
-            X = exp(self.screws[i] * q[..., i, None]) @ X
+            X = each[..., i, :, :] @ X
         return X
 
     def jacobian(self, q: ArrayLike) -> Array:
         """Spatial Jacobian about W's origin; q (..., n) to (..., 6, n), twists as [w; v]."""
-        q = np.asarray(q, dtype=float)
-        J = np.empty((*q.shape[:-1], 6, self.n))
-        X = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))
+        return self.pose_and_jacobian(q)[1]
+
+    def pose_and_jacobian(self, q: ArrayLike) -> tuple[Array, Array]:
+        """Both of the same q (..., n), for which the joints' exponentials are needed but once."""
+        each = self._exponentials(q)
+        before = np.empty((*each.shape[:-3], self.n + 1, 4, 4))
+        before[..., 0, :, :] = np.eye(4)
         for i in range(self.n):
-            J[..., i] = adjoint(X) @ self.screws[i]
-            X = X @ exp(self.screws[i] * q[..., i, None])
-        return J
+            before[..., i + 1, :, :] = before[..., i, :, :] @ each[..., i, :, :]
+        J = (adjoint(before[..., :-1, :, :]) @ self.screws[..., None])[..., 0]
+        return before[..., -1, :, :] @ self.home, np.swapaxes(J, -1, -2)
+
+    def _exponentials(self, q: ArrayLike) -> Array:
+        """exp(S_i q_i) of every joint; q (..., n) to (..., n, 4, 4)."""
+        return exp(self.screws * np.asarray(q, dtype=float)[..., None])
 
 
 def _nearest_points(axes: Array, start: Array) -> list[Array]:

@@ -21,6 +21,7 @@ from pydrake.multibody.tree import RigidBody
 
 from drake_screw.errors import ModelError
 from drake_screw.robot.mesh_files import CONVERTED, hull_file
+from drake_screw.robot.model_text import LARGEST
 from drake_screw.typing import Array
 
 MESH_SUFFIXES = (".obj", ".gltf", ".vtk")
@@ -184,8 +185,15 @@ def _hull(file: Path, scale: float) -> Convex:
         raise ModelError(f"this mesh {error.message}", remedy=remedy, file=file) from error
     try:
         shape = Convex(str(read), scale)
-        shape.GetConvexHull()
+        hull = shape.GetConvexHull()
     except (RuntimeError, ValueError) as error:
         message = f"Drake cannot read this mesh: {error}"
         raise ModelError(message, remedy=remedy, file=file) from error
+    far = max(float(np.abs(hull.vertex(i)).max()) for i in range(hull.num_vertices()))
+    if not far <= LARGEST:
+        raise ModelError(
+            f"this mesh, {scale:g} times as large as in the file, goes as far as {far:.3g} m",
+            remedy="Give a scale with which its coordinates are in m: 0.001 if they are in mm.",
+            file=file,
+        )
     return shape

@@ -16,7 +16,7 @@ from pydantic_core import ErrorDetails
 from drake_screw.acquisition import Evaluation, Executed
 from drake_screw.bandits import Cell
 from drake_screw.errors import RunDirectoryError
-from drake_screw.planning import Outcomes
+from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.certificate import Certificate
 from drake_screw.runs.records import RunRecord, SuggestionRecord
 from drake_screw.tasks import PLANAR
@@ -115,8 +115,32 @@ def load_evaluation(file: Path) -> Evaluation:
             data.get("pair"),  # not known in old runs
             data.get("arm"),  # the only one in old runs
         )
-        region = data["region"].astype(np.int64)
-        return Evaluation(_coordinates(data), region, outcomes, _frontier(data), _executed(data))
+        coordinates, region = _coordinates(data), data["region"]
+        _check("x_y_yaw", coordinates, "f", (..., ..., ...))
+        _check("region", region, "iu", (...,))
+        if region.min(initial=0) < 0:
+            raise ValueError("region holds numbers below 0")
+        if not np.isfinite(coordinates).all():
+            raise ValueError("x_y_yaw holds numbers that are not finite")
+        for name, array in vars(outcomes).items():
+            _check(name, array, "f" if name == "fraction" else "iu", outcomes.shape)
+        if not np.isin(outcomes.cause, list(Cause)).all():
+            raise ValueError("cause holds numbers that stand for none")
+        region = region.astype(np.int64)
+        return Evaluation(coordinates, region, outcomes, _frontier(data), _executed(data))
+
+
+def _check(name: str, array: NDArray[Any], kinds: str, shape: tuple[Any, ...]) -> None:
+    """Refuse an array of another kind or shape; ... stands for any length.
+
+    Raises:
+        ValueError: it is such a one.
+    """
+    fits = len(array.shape) == len(shape) and all(
+        wanted in (..., found) for wanted, found in zip(shape, array.shape, strict=True)
+    )
+    if array.dtype.kind not in kinds or not fits:
+        raise ValueError(f"{name} is of type {array.dtype} and shape {array.shape}")
 
 
 def _coordinate_arrays(coordinates: Array) -> dict[str, Array]:

@@ -18,6 +18,7 @@ from drake_screw.runs.run import Run, open_run
 from drake_screw.runs.shared_instances import SharedInstances, shared_instances
 from drake_screw.runs.summary import RunSummary, summarize_run
 from drake_screw.scenario.differences import Difference, differences, scenario_differences
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tasks import Regions
 from drake_screw.typing import PathLike
 from drake_screw.visualization.palette import OUTCOME_NAMES
@@ -95,8 +96,8 @@ class Comparison:
     notes: tuple[str, ...]
 
 
-def open_runs(directories: Sequence[PathLike]) -> list[Run]:
-    """Open finished runs to compare them.
+def open_runs(directories: Sequence[PathLike], tell: Tell = to_nobody) -> list[Run]:
+    """Open finished runs to compare them; `tell` is told how far it is.
 
     Raises:
         RunDirectoryError: one is not a run, cannot be read, has not finished, or is given twice;
@@ -117,9 +118,11 @@ def open_runs(directories: Sequence[PathLike]) -> list[Run]:
             raise RunDirectoryError(
                 "this run is given twice", remedy="Name each run once.", file=other
             )
-    runs = [open_run(path) for path in directories]
-    for run in runs:
-        summarize_run(run)
+    runs: list[Run] = []
+    for path in directories:
+        tell(Step("reading runs", len(runs), len(directories)))
+        runs.append(open_run(path))
+        summarize_run(runs[-1])
     return runs
 
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import platform
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self, TextIO
 
@@ -60,11 +58,8 @@ class RunDirectory:
         runs = Path("runs") / record.scenario
         with writing(path or runs, remedy="Choose a folder you may write to with --output."):
             path = fresh_folder(runs) if path is None else path
-            make_folder(path, "run")
-            directory = cls(path, record)
-            write_text(path / SCENARIO, scenario_text)
-            directory.save()
-        return directory
+            make_folder(path, "run", {SCENARIO: scenario_text, RUN: json_text(record)})
+        return cls(path, record)
 
     @classmethod
     def open(cls, path: Path) -> Self:
@@ -76,7 +71,8 @@ class RunDirectory:
         if not (path / RUN).is_file():
             raise RunDirectoryError(
                 f"not a run directory: it has no {RUN}",
-                remedy="Give the folder that a run printed at its end.",
+                remedy="Give the folder that a run printed at its end. One that ended before it "
+                "had begun can be given to --output again.",
                 file=path,
             )
         return cls(path, read_run_record(path / RUN))
@@ -153,9 +149,3 @@ class RunDirectory:
 
 def _appending(file: Path) -> TextIO:
     return file.open("a", encoding="utf-8", errors="backslashreplace")
-
-
-def versions() -> dict[str, str]:
-    """Versions of all that a result may depend on."""
-    packages = ("drake-screw", "drake", "numpy", "scipy", "numba")
-    return {"python": platform.python_version(), **{name: version(name) for name in packages}}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -30,7 +31,9 @@ from drake_screw.execution.trials import Trial, TrialSummary, summarize, trials_
 from drake_screw.files import fresh_folder, write_folder, writing
 from drake_screw.planning import Outcomes, concatenate
 from drake_screw.runs.executions_page import executions_page
-from drake_screw.runs.run import open_run
+from drake_screw.runs.run import Run, open_run
+from drake_screw.sharing import Workers
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tasks import draw_in_all
 from drake_screw.typing import Array, PathLike
 from drake_screw.visualization.object_looks import bowl_look
@@ -39,6 +42,7 @@ ROUND = 1_000_000
 """The round whose instances are executed. No run gets that far, so they are fresh."""
 
 TRIES = 20  # times as many instances are drawn in a region at most as are wanted
+_UNWRITABLE = "Executions are written beside the run; make its folder writable."
 
 
 @dataclass(frozen=True)
@@ -65,9 +69,9 @@ def execute(
     *,
     per_region: int = 2,
     instance: InstanceLike | None = None,
-    workers: int | None = None,
+    workers: Workers = None,
     free_objects: bool = False,
-    progress: Callable[[int, int], None] | None = None,
+    tell: Tell = to_nobody,
 ) -> Executions:
     """Plan, simulate and report executions of a run.
 
@@ -81,10 +85,10 @@ def execute(
         per_region: executions in every region; instances without a plan are drawn again, and
             reported.
         instance: execute this one instead: {object: (x, y[, yaw])}, or as `placed` takes them.
-        workers: processes; as many as processors if None.
+        workers: processes, as many as processors if None; or a cluster.
         free_objects: objects can be pushed, and pushing one farther than the scenario's block
             `execution` allows is a flaw; else they are locked in place.
-        progress: called with how many are done and how many there are to simulate.
+        tell: told how many are executed, and how many there are.
 
     Raises:
         DrakeScrewError: the run cannot be read or has no demonstrations, the instance is not one,
@@ -112,7 +116,33 @@ def execute(
     X_WO = setup.area.X_WO(coordinates)
     solved = np.flatnonzero(outcomes.any_success).tolist()
     best = {i: setup.plan(demonstrations, coordinates[i], most=1) for i in solved}
-    done = _executed(setup, best, X_WO, workers, progress, free_objects=free_objects)
+    parent = opened.directory.path / "executions"
+    with writing(parent, _UNWRITABLE):  # before anything is simulated, which takes long
+        folder = fresh_folder(parent)
+    try:
+        done = _executed(setup, best, X_WO, workers, tell, free_objects=free_objects)
+        trials = _trials(opened, coordinates, outcomes, best, done)
+        found = summarize(trials)
+        with writing(folder, _UNWRITABLE):
+            write_folder(folder, partial(_fill, setup, trials, found, free_objects=free_objects))
+    except BaseException:
+        with suppress(OSError):
+            folder.rmdir()
+            folder.parent.rmdir()
+        raise
+    return Executions(folder, _assumed(setup), found)
+
+
+def _trials(
+    opened: Run,
+    coordinates: Array,
+    outcomes: Outcomes,
+    best: Mapping[int, RankedPlan],
+    done: Mapping[int, Execution],
+) -> list[Trial]:
+    """What became of each instance."""
+    setup, demonstrations = opened.setup, opened.demonstrations
+    X_WO = setup.area.X_WO(coordinates)
     trials = []
     for i, place in enumerate(coordinates):
         region = int(setup.regions.index(place))
@@ -124,33 +154,26 @@ def execute(
         else:
             why = why_failed(setup.arms, outcomes[i], demonstrations, X_WO[i])
             trials.append(Trial(region, place, "", why, None))
-    found = summarize(trials)
+    return trials
 
-    def fill(folder: Path) -> None:
-        (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
-        (folder / "summary.txt").write_text(f"{found}\n")
-        page = executions_page(setup, trials, free_objects=free_objects)
-        if page is not None:
-            (folder / "executions.html").write_text(page, encoding="utf-8")
 
-    parent = opened.directory.path / "executions"
-    remedy = "Executions are written beside the run; make its folder writable."
-    with writing(parent, remedy):
-        folder = fresh_folder(parent)
-        try:
-            write_folder(folder, fill)
-        except BaseException:
-            folder.rmdir()
-            raise
-    return Executions(folder, _assumed(setup), found)
+def _fill(
+    setup: Setup, trials: Sequence[Trial], found: TrialSummary, folder: Path, *, free_objects: bool
+) -> None:
+    """Write the table, the summary and the page that plays them."""
+    (folder / "executions.csv").write_text(trials_csv(trials, setup.area))
+    (folder / "summary.txt").write_text(f"{found}\n")
+    page = executions_page(setup, trials, free_objects=free_objects)
+    if page is not None:
+        (folder / "executions.html").write_text(page, encoding="utf-8")
 
 
 def _executed(
     setup: Setup,
     best: Mapping[int, RankedPlan],
     X_WO: Array,
-    workers: int | None,
-    progress: Callable[[int, int], None] | None,
+    workers: Workers,
+    tell: Tell,
     *,
     free_objects: bool,
 ) -> dict[int, Execution]:
@@ -158,16 +181,15 @@ def _executed(
     done: dict[int, Execution] = {}
 
     def told(count: int, _: int, before: int) -> None:
-        if progress is not None:
-            progress(before + count, len(best))
+        tell(Step("executed", before + count, len(best)))
 
     for one in setup.arms:
         own = [i for i, plan in best.items() if plan.arm is one.arm]
         if own:
             config = station_config(setup, one.robot, free_objects=free_objects)
             jobs = [Job(best[i].plan, X_WO[i]) for i in own]
-            tell = partial(told, before=len(done))
-            executed = execute_all(config, jobs, workers=workers, progress=tell)
+            progress = partial(told, before=len(done))
+            executed = execute_all(config, jobs, workers=workers, progress=progress)
             done |= dict(zip(own, executed, strict=True))
     return done
 

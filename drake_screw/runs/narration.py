@@ -15,6 +15,7 @@ from drake_screw.acquisition import (
 )
 from drake_screw.errors import counted
 from drake_screw.tasks import Regions
+from drake_screw.visualization.rounds import weakest
 
 
 def describe(event: Event, regions: Regions) -> str:
@@ -27,13 +28,14 @@ def describe(event: Event, regions: Regions) -> str:
         case InstancesExecuted():
             return f"round {event.round + 1}: executed {event.done:,} of {event.total:,}"
         case RoundFinished():
-            verdict = event.verdict
-            weakest = verdict.estimates[verdict.region]
+            verdict, region = event.verdict, weakest(event)
+            worst = "none fails"
+            if region is not None:
+                worst = f"weakest region {region} ({event.regions.name(region)}) fails "
+                worst += f"{verdict.estimates[region]:.2%}"
             return (
                 f"round {event.round + 1}: {counted(len(event.evaluation.region), 'instance')}; "
-                f"weakest region {verdict.region} ({event.regions.name(verdict.region)}) fails "
-                f"{weakest:.2%}; "
-                f"{verdict.reason}"
+                f"{worst}; {verdict.reason}"
             )
         case DemonstrationRequested():
             return f"demonstration {event.number + 1} wanted at {place(event.suggestion, regions)}"

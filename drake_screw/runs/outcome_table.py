@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,21 +12,22 @@ import numpy as np
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import counted
-from drake_screw.files import WRITABLE_OUTPUT, write_text, writing
-from drake_screw.planning import Cause, Outcomes
-from drake_screw.planning.symmetry import TOOL
-from drake_screw.planning.touching import (
-    CollisionCounts,
-    Pair,
-    count_collisions,
-    cut_short,
-    known_pair,
-    pair_name,
-    touching_bodies,
-)
-from drake_screw.runs.instance_tables import outcomes_csv, read_instances, unlike_fixed
+from drake_screw.files import WRITABLE_OUTPUT, writing
+from drake_screw.planning import Outcomes, concatenate
+from drake_screw.planning.touching import CollisionCounts, CollisionTally
+from drake_screw.runs.instance_tables import read_instances
+from drake_screw.runs.outcome_columns import outcome_columns
+from drake_screw.runs.outcome_files import outcome_file
+from drake_screw.runs.shared_outcomes import SharedOutcomes
 from drake_screw.scenario.schema import Scenario
+from drake_screw.sharing import Executor
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.typing import Array, PathLike
+
+PORTION = 64, 1 << 13
+"""Instances that are planned at a time, at first and at most; more where it goes fast."""
+BRISK = 0.3
+"""s, that a portion is to take; it is halved if it takes four times as long."""
 
 
 @dataclass(frozen=True)
@@ -90,113 +91,135 @@ class OutcomeTable:
 
 
 def tabulate_outcomes(
-    scenario: Scenario, demonstrations: PathLike, instances: PathLike, output: PathLike
+    scenario: Scenario,
+    demonstrations: PathLike,
+    instances: PathLike,
+    output: PathLike,
+    *,
+    tell: Tell = to_nobody,
+    cluster: Executor | None = None,
 ) -> OutcomeTable:
-    """Write the outcomes of all instances with all demonstrations as a CSV.
+    """Write the outcomes of all instances with all demonstrations as a table.
+
+    However many instances there are, memory does not grow: all are read and looked at first, then
+    planned and written a block at a time. The table is there when all of it is.
 
     Args:
         scenario: gives robot, start configuration, objects and segmentation.
         demonstrations: folder of recordings, of the robot that the scenario says they are of.
-        instances: CSV to read, see `read_instances`.
-        output: CSV to write, see `outcomes_csv`; with a column `demonstration:arm` for the arm that
-            an outcome is of where there are several, a column `demonstration:body` for each body
-            that a demonstration may turn, and a column `demonstration:touches` for each
-            demonstration of which a plan collides, with the bodies: "left_hand-bowl".
+        instances: CSV or Parquet to read, see `read_instances`.
+        output: CSV, gzipped CSV or Parquet to write, by its ending: .csv, .csv.gz, .parquet. A row
+            for each instance, in their order; columns are those of `outcome_columns`, that of what
+            touches for each demonstration of which a plan collides.
+        tell: told how far it is.
+        cluster: whose workers plan; None for all processors of this machine.
 
     Raises:
         DrakeScrewError: anything that cannot be read or written; nothing is written then.
     """
-    setup, output = Setup(scenario), Path(output)
-    coordinates = read_instances(Path(instances), setup.area)
+    output = Path(output)
+    tell(Step(f"learning from {demonstrations}"))
+    setup = Setup(scenario)
     learned = [setup.learn(recording) for recording in setup.recordings(demonstrations)]
-    began = time.perf_counter()
-    outcomes = setup.evaluate(learned, coordinates)
-    seconds = time.perf_counter() - began
-    turns = _turns(setup, learned, setup.area.X_WO(coordinates), outcomes)
-    arms = _arms(setup, learned, outcomes)
-    touching = _touching(setup, learned, setup.area.X_WO(coordinates), outcomes)
-    names = [d.name for d in learned]
-    text = outcomes_csv(coordinates, outcomes, names, setup.area, turns, {**arms, **touching})
-    with writing(output, WRITABLE_OUTPUT):
-        write_text(output, text)
-    rates = outcomes.success.mean(axis=0).tolist()
-    return OutcomeTable(
-        output=output,
-        instances=len(coordinates),
-        outside=int((~setup.area.contains(coordinates)).sum()),
-        unlike_fixed=unlike_fixed(coordinates, setup.area),
-        success_rates={d.name: rate for d, rate in zip(learned, rates, strict=True)},
-        solved=float(outcomes.any_success.mean()),
-        arms=_shares(setup, outcomes),
-        collisions=(
-            count_collisions(outcomes, setup.workcell) if scenario.planner.collision else None
-        ),
-        seconds=seconds,
-        planned_only=scenario.coverage.success == "execution",
-    )
+    with writing(output, WRITABLE_OUTPUT), outcome_file(output) as table:
+        found = read_instances(Path(instances), setup.area, tell)
+        tally = _Tally(setup, learned)
+        portions = (
+            _Portions(setup, learned)
+            if cluster is None
+            else SharedOutcomes(setup, learned, cluster)
+        )
+        columns, done = found.columns, 0
+
+        def planned(count: int) -> None:
+            nonlocal done
+            done += count
+            tell(Step("planning instances", done, len(found)))
+
+        planned(0)
+        for coordinates in found.blocks():
+            outcomes = portions.plan(coordinates, planned)
+            tally.add(coordinates, outcomes)
+            table.add(outcome_columns(setup, learned, coordinates, columns, outcomes))
+        tell(Step("writing the table"))
+    return tally.of(output, found.unlike_fixed, portions.seconds)
 
 
-def _turns(
-    setup: Setup, demonstrations: Sequence[Demonstration], X_WO: Array, outcomes: Outcomes
-) -> dict[str, Array]:
-    """Columns (N,) for each demonstration and each symmetric body that it turns, rad."""
-    names = [*(o.name for o in setup.area.objects), TOOL]
-    columns: dict[str, Array] = {}
-    for d, demonstration in enumerate(demonstrations):
-        for one in setup.arms:
-            own = outcomes.arm[:, d] == one.number
-            variant = outcomes.variant[own, d]
-            angles = one.symmetries.angles(demonstration, X_WO[own], variant)
-            for body in one.symmetries.bodies(demonstration):
-                turned = np.remainder(angles[:, body] + np.pi, 2.0 * np.pi) - np.pi
-                name = f"{demonstration.name}:{names[body]}"
-                columns.setdefault(name, np.zeros(len(X_WO)))[own] = turned
-    return columns
+class _Portions:
+    """Plans a portion of a block at a time, so that one hears how far it is.
+
+    Outcomes do not depend on how they are divided.
+
+    Args:
+        setup: of the scenario.
+        demonstrations: D of them.
+
+    Attributes:
+        seconds: that planning took.
+    """
+
+    def __init__(self, setup: Setup, demonstrations: Sequence[Demonstration]) -> None:
+        self._setup, self._demonstrations = setup, demonstrations
+        self.seconds = 0.0
+        self._size, self._most = PORTION
+
+    def plan(self, coordinates: Array, planned: Callable[[int], None]) -> Outcomes:
+        """Outcomes (N, D) of instances (N, k, c)."""
+        parts, first = [], 0
+        while first < len(coordinates):
+            some = coordinates[first : first + self._size]
+            began = time.perf_counter()
+            parts.append(self._setup.evaluate(self._demonstrations, some))
+            taken = time.perf_counter() - began
+            self.seconds += taken
+            first += len(some)
+            planned(len(some))
+            if taken < BRISK:
+                self._size = min(2 * self._size, self._most)
+            elif taken > 4.0 * BRISK:
+                self._size = max(self._size // 2, 1)
+        return concatenate(parts)
 
 
-def _arms(
-    setup: Setup, demonstrations: Sequence[Demonstration], outcomes: Outcomes
-) -> dict[str, list[str]]:
-    """Columns (N,) for each demonstration: the arm that its outcomes are of, where several are."""
-    if not setup.arms[0].among_several:
-        return {}
-    names = np.array([one.name for one in setup.arms])
-    return {
-        f"{demonstration.name}:arm": names[outcomes.arm[:, d]].tolist()
-        for d, demonstration in enumerate(demonstrations)
-    }
+class _Tally:
+    """Counts of what a table says, block by block."""
 
+    def __init__(self, setup: Setup, demonstrations: Sequence[Demonstration]) -> None:
+        self._setup = setup
+        self._names = [demonstration.name for demonstration in demonstrations]
+        self._collisions = CollisionTally(setup.workcell)
+        self._instances = self._outside = self._solved = 0
+        self._successes = np.zeros(len(demonstrations), dtype=np.int64)
+        self._by_arm = np.zeros(len(setup.arms) + 1, dtype=np.int64)
 
-def _shares(setup: Setup, outcomes: Outcomes) -> dict[str, float]:
-    """The share of instances that each of several arms solves, the first that can."""
-    solved = np.where(outcomes.success, outcomes.arm, len(setup.arms)).min(axis=1)
-    return {
-        one.name: float((solved == one.number).mean()) for one in setup.arms if one.among_several
-    }
+    def add(self, coordinates: Array, outcomes: Outcomes) -> None:
+        """Counts outcomes (N, D) of instances (N, k, c)."""
+        self._instances += len(coordinates)
+        self._outside += int((~self._setup.area.contains(coordinates)).sum())
+        self._successes += outcomes.success.sum(axis=0)
+        self._solved += int(outcomes.any_success.sum())
+        none = len(self._setup.arms)
+        first = np.where(outcomes.success, outcomes.arm, none).min(axis=1)
+        self._by_arm += np.bincount(first, minlength=none + 1)
+        if self._setup.scenario.planner.collision:
+            self._collisions.add(outcomes)
 
-
-def _touching(
-    setup: Setup, demonstrations: Sequence[Demonstration], X_WO: Array, outcomes: Outcomes
-) -> dict[str, list[str]]:
-    """Columns (N,) for demonstrations that collide: which bodies touch, "" where none do."""
-    columns = {}
-    for d, demonstration in enumerate(demonstrations):
-        column = [""] * len(X_WO)
-        for i in np.flatnonzero(outcomes.cause[:, d] == Cause.COLLISION).tolist():
-            bodies = _bodies(setup, demonstration, X_WO[i], outcomes[i, d])
-            column[i] = pair_name(bodies[0]) if bodies else ""
-        if any(column):
-            columns[f"{demonstration.name}:touches"] = column
-    return columns
-
-
-def _bodies(
-    setup: Setup, demonstration: Demonstration, X_WO: Array, outcome: Outcomes
-) -> tuple[Pair, ...]:
-    """What touches, of an outcome of shape (); planned again where it does not say that."""
-    known = known_pair(outcome, setup.workcell)
-    if known is not None:
-        return (known,)
-    plan = cut_short(setup.judged_plan(demonstration, X_WO, outcome), outcome)
-    clearance = setup.scenario.planner.clearance
-    return touching_bodies(outcome, setup.arm_of(outcome).workcell, plan.q[-1], X_WO, clearance)
+    def of(self, output: Path, unlike_fixed: dict[str, int], seconds: float) -> OutcomeTable:
+        """What there is to say of the table."""
+        setup, N = self._setup, self._instances
+        return OutcomeTable(
+            output=output,
+            instances=N,
+            outside=self._outside,
+            unlike_fixed=unlike_fixed,
+            success_rates=dict(zip(self._names, (self._successes / N).tolist(), strict=True)),
+            solved=self._solved / N,
+            arms={
+                one.name: int(self._by_arm[one.number]) / N
+                for one in setup.arms
+                if one.among_several
+            },
+            collisions=self._collisions.counts if setup.scenario.planner.collision else None,
+            seconds=seconds,
+            planned_only=setup.scenario.coverage.success == "execution",
+        )

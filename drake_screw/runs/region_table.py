@@ -6,14 +6,13 @@ import numpy as np
 
 from drake_screw.bandits import Verdict
 from drake_screw.files import csv_text
-from drake_screw.tasks import Regions
+from drake_screw.tasks import Regions, column_names
 
 
 def regions_csv(verdict: Verdict, regions: Regions) -> str:
     """A row for each region of a round: its range in m and rad, counts, confidence bounds."""
     area = regions.area
-    axes = [f"{area.objects[i].name}_{area.axes[j]}" for i, j in area.columns]
-    ends = [f"{axis}_{end}" for axis in axes for end in ("min", "max")]
+    ends = [f"{axis}_{end}" for axis in column_names(area) for end in ("min", "max")]
     rows: list[list[object]] = [
         ["region", *ends, "samples", "failures", "failure_rate", "lower", "upper"]
     ]

@@ -35,7 +35,7 @@ from drake_screw.runs.begun_with import (
 from drake_screw.runs.certificate import Certificate
 from drake_screw.runs.certifying import certificate
 from drake_screw.runs.codec import FORMAT
-from drake_screw.runs.directory import PICTURE, SCENARIO, RunDirectory, versions
+from drake_screw.runs.directory import PICTURE, SCENARIO, RunDirectory
 from drake_screw.runs.html import certificate_html, run_html
 from drake_screw.runs.kept_executions import KeptExecutions
 from drake_screw.runs.mending import drop_damaged, find_damage
@@ -46,6 +46,7 @@ from drake_screw.runs.resuming import carry_on
 from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
 from drake_screw.typing import PathLike
+from drake_screw.versions import versions
 
 Listener = Callable[[Event], None]
 """Is called with the events of a run, in their order."""

@@ -18,15 +18,21 @@ from drake_screw.errors import DrakeScrewError, RecordingError
 from drake_screw.runs.certifying import certificate
 from drake_screw.runs.codec import plain
 from drake_screw.runs.selection import Attempt, PassedOver, Selection, TableSummary
-from drake_screw.runs.selection_events import Listener, Step, Tried
+from drake_screw.runs.selection_events import Listener, Tried
 from drake_screw.runs.selection_margins import Margins, certified_rates, short_rates
 from drake_screw.runs.selection_table import ROUND, Asked, GrowingTable
 from drake_screw.scenario.schema import Scenario
+from drake_screw.steps import Step
 from drake_screw.tasks import Regions
 from drake_screw.typing import PathLike
 
 INSTANCES = 400
-"""In each region of the first table."""
+"""In each region of the first table, if nothing else is asked for."""
+
+TABLE = 6_400
+"""In all regions of it together, unless that were less than `LEAST` in each."""
+
+LEAST = 25
 
 LOOKS = 6
 """Tables that are looked at, each with twice the instances of the one before; in each of them one
@@ -37,7 +43,7 @@ def select(
     scenario: Scenario,
     demonstrations: PathLike,
     *,
-    instances: int = INSTANCES,
+    instances: int | None = None,
     listener: Listener | None = None,
     **parts: Unpack[Parts],
 ) -> Selection:
@@ -51,7 +57,8 @@ def select(
     Args:
         scenario: says what is enough.
         demonstrations: a folder of recordings.
-        instances: in each region of the first table.
+        instances: in each region of the first table; if None `INSTANCES`, and fewer where there
+            are so many regions that these were more than `TABLE`.
         listener: called with what happens, as it happens.
         parts: passed on to `Setup`.
 
@@ -59,14 +66,15 @@ def select(
         DrakeScrewError: something that cannot be used, or nothing is learned from any recording.
     """
     began = time.perf_counter()
-    if instances < 1:
+    if instances is not None and instances < 1:
         raise DrakeScrewError(f"{instances} instances a region", remedy="Give at least 1.")
     tell: Listener = listener or (lambda event: None)
     setup, source = Setup(scenario, **parts), Path(demonstrations)
     assert setup.bandit is not None
     library = _learned(setup, source, tell)
     asked = Asked.of(setup)
-    growing = GrowingTable(setup, library.demonstrations, asked.regions, instances, tell)
+    each = instances or instances_in_each(asked.regions.K)
+    growing = GrowingTable(setup, library.demonstrations, asked.regions, each, tell)
     trials = _Trials(setup, library.demonstrations, tell)
     end = _choose(asked, growing, trials, tell)
     tell(Step("comparing with other sets"))
@@ -114,6 +122,15 @@ def select(
         confidence=1.0 - setup.goal.delta,
         seconds=time.perf_counter() - began,
     )
+
+
+def instances_in_each(K: int) -> int:
+    """How many instances the first table has in each of K regions if nothing else is asked for.
+
+    >>> [instances_in_each(K) for K in (1, 16, 64, 1024)]
+    [400, 400, 100, 25]
+    """
+    return min(INSTANCES, max(LEAST, TABLE // K))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,16 +8,8 @@ from dataclasses import dataclass
 from drake_screw.acquisition import InstancesExecuted, RegionsEvaluated
 from drake_screw.bandits import Verdict
 from drake_screw.runs.selection import Attempt
+from drake_screw.steps import Step
 from drake_screw.tasks import Regions
-
-
-@dataclass(frozen=True)
-class Step:
-    """How far a step is: what is done, and `done` of `total`, where that is known."""
-
-    words: str
-    done: int = 0
-    total: int | None = None
 
 
 @dataclass(frozen=True, eq=False)

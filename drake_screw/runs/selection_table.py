@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from drake_screw.acquisition.cover_table import CoverTable
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Demonstration
-from drake_screw.runs.selection_events import Listener, Step
+from drake_screw.runs.selection_events import Listener
+from drake_screw.steps import Step
 from drake_screw.tasks import Regions, box_regions, draw_in_all
 
 ROUND = 2_000_000

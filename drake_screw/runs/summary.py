@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from drake_screw.acquisition import Evaluation
+from drake_screw.acquisition import Evaluation, RoundFinished, Status
 from drake_screw.errors import RunDirectoryError, counted
 from drake_screw.planning.touching import CollisionCounts, count_collisions
 from drake_screw.runs.codec import plain
+from drake_screw.runs.records import RunRecord
 from drake_screw.runs.run import Run
+from drake_screw.visualization.rounds import headline
 
 
 @dataclass(frozen=True)
@@ -23,6 +25,18 @@ class RoundSummary:
     weakest_region: int
     failure_rate: float
     certified: bool
+
+
+def round_in_run(event: RoundFinished, record: RunRecord) -> str:
+    """A round and how it ended, and how the run did: "...; the run: certified in round 4"."""
+    words, last = headline(event), len(record.rounds)
+    if event.round + 1 == last and record.status == Status.CERTIFIED:
+        return f"{words}, the end of the run"
+    if record.status == Status.CERTIFIED:
+        return f"{words}; the run: certified in round {last}"
+    if record.ended:
+        return f"{words}; the run: {record.status}, ended after {counted(last, 'round')}"
+    return f"{words}; the run: {record.status}, {counted(last, 'round')} so far"
 
 
 @dataclass(frozen=True)

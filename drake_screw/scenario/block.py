@@ -30,6 +30,11 @@ def refusal(message: str, remedy: str | None = None) -> PydanticCustomError:
     return PydanticCustomError("rule", "{message}", {"message": message, "remedy": remedy})
 
 
+LARGEST = {"m": 1e3, "rad": 1e3, "kg": 1e6}
+"""By unit: what is larger is in another one, and more than geometry and dynamics can be done with.
+Of the shapes of a robot's model see `robot.model_text.LARGEST`."""
+
+
 class Block(BaseModel):
     """A block of a scenario file. The fields are its keys.
 
@@ -43,7 +48,6 @@ class Block(BaseModel):
         extra="forbid",
         strict=True,
         allow_inf_nan=False,
-        use_attribute_docstrings=True,
     )
 
     def broken_rules(self) -> Iterator[Problem]:
@@ -52,6 +56,17 @@ class Block(BaseModel):
         Asked only where every key is right by itself.
         """
         yield from ()
+
+    def _too_large(self) -> Iterator[Problem]:
+        for name, about in type(self).model_fields.items():
+            extra, value = about.json_schema_extra, getattr(self, name)
+            unit = str(extra.get("unit")) if isinstance(extra, dict) else ""
+            ends = getattr(value, "ends", value)
+            numbers = [x for x in (ends if isinstance(ends, tuple) else (ends,)) if _is_number(x)]
+            largest = max(numbers, key=abs, default=0.0)
+            if unit in LARGEST and abs(largest) > LARGEST[unit]:
+                message = f"{largest:g} {unit} is beyond {LARGEST[unit]:,.0f} {unit}"
+                yield Problem((name,), message, f"Numbers here are in {unit}.")
 
     @model_validator(mode="before")
     @classmethod
@@ -62,8 +77,12 @@ class Block(BaseModel):
     def _keeps_its_rules(self) -> Self:
         errors = [
             InitErrorDetails(type=refusal(p.message, p.remedy), loc=p.keys, input=None)
-            for p in self.broken_rules()
+            for p in (*self._too_large(), *self.broken_rules())
         ]
         if errors:
             raise ValidationError.from_exception_data(type(self).__name__, errors)
         return self
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

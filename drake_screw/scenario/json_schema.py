@@ -13,7 +13,8 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core.core_schema import ModelSchema
 
-from drake_screw.scenario.block import Keys
+from drake_screw.scenario.block import Block, Keys
+from drake_screw.scenario.meanings import meanings
 from drake_screw.scenario.schema import Scenario
 from drake_screw.scenario.values import Interval
 
@@ -132,7 +133,7 @@ def _with_nothing(schema: Any) -> Any:
 
 
 class _Generator(GenerateJsonSchema):
-    """Without the names that pydantic gives to keys and classes, and line breaks in meanings."""
+    """With the meanings of keys, and without the names that pydantic gives to keys and classes."""
 
     def encode_default(self, dft: Any) -> Any:
         return dft.written() if isinstance(dft, Interval) else super().encode_default(dft)
@@ -144,8 +145,9 @@ class _Generator(GenerateJsonSchema):
         made = super().model_schema(schema)
         made.pop("title", None)
         made.pop("description", None)
-        for key in made["properties"].values():
-            key["description"] = " ".join(key["description"].split())
+        block: type[Block] = schema["cls"]
+        for name, meaning in meanings(block).items():
+            made["properties"][name]["description"] = meaning
         return made
 
 

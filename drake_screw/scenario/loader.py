@@ -26,6 +26,9 @@ from drake_screw.scenario.yaml_marks import (
 )
 from drake_screw.typing import PathLike
 
+SHOWN = 12
+"""Problems of a scenario that a message lists."""
+
 _BEFORE_IT_WAS_WRITTEN = {
     ("segmentation", "method"): "published",
     ("demonstrations", "ask"): "earliest",
@@ -146,8 +149,9 @@ def _error(problems: Sequence[Problem], tree: Node, file: Path) -> ScenarioError
     if len(errors) == 1:
         return errors[0]
     lines = []
-    for error in sorted(errors, key=lambda e: e.line or 0):
+    for error in sorted(errors, key=lambda e: e.line or 0)[:SHOWN]:
         place = "" if error.line is None else f"line {error.line}: "
         lines.append(f"  {place}{error.message}")
         lines.extend([f"    {error.remedy}"] if error.remedy else [])
-    return ScenarioError("\n".join([f"{len(errors)} problems", *lines]), file=file)
+    few = "" if len(errors) <= SHOWN else f", of which these are the first {SHOWN}"
+    return ScenarioError("\n".join([f"{len(errors):,} problems{few}", *lines]), file=file)

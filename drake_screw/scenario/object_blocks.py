@@ -58,8 +58,6 @@ class ObjectBlock(Block):
     def broken_rules(self) -> Iterator[Problem]:
         for axis in AXES:
             interval = getattr(self, axis)
-            if not math.isfinite(interval.upper - interval.lower):
-                yield Problem((axis,), "the range is too wide")
             if self.orientation is not None and axis in ANGLES and interval != Interval(0.0, 0.0):
                 yield Problem(
                     (axis,),

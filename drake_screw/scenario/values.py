@@ -34,6 +34,10 @@ class Interval:
     upper: float
 
     @property
+    def ends(self) -> tuple[float, float]:
+        return self.lower, self.upper
+
+    @property
     def fixed(self) -> bool:
         return self.lower == self.upper
 

@@ -6,7 +6,7 @@ Numbers, truth values and nulls are those of YAML 1.2: ``1e-5`` is a number, ``n
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -82,6 +82,9 @@ def plain(node: Node) -> Any:
     return text
 
 
+MOST_VALUES = 100_000
+"""In a text, every alias written out; each use of one is a value of its own."""
+
 _TAG = "tag:yaml.org,2002:"
 _NO_CHARACTER = re.compile(r"\\U(?!000|0010)[0-9a-fA-F]{8}")
 _FLOAT = re.compile(
@@ -139,11 +142,12 @@ def parse(text: str, place: Place) -> Node | None:
         place: the file, or the override, that it comes from. Lines are filled in for a file.
 
     Raises:
-        ScenarioError: the text is not YAML, repeats a key, or uses tags.
+        ScenarioError: the text is not YAML, repeats a key, uses tags, or is made of aliases of
+            aliases that stand for more than `MOST_VALUES`.
     """
     try:
         root = yaml.compose(text, Loader=_Loader)
-        return None if root is None else _Tree(place).node(root, None, "")
+        tree = None if root is None else _Tree(place).node(root, None, "")
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         raise _at(place, line).error(
@@ -166,6 +170,24 @@ def parse(text: str, place: Place) -> Node | None:
         ) from None
     except RecursionError:
         raise place.error("not usable: nested too deeply, or an alias of itself") from None
+    if tree is not None and _size(tree, {}) > MOST_VALUES:
+        raise place.error(
+            f"not usable: aliases make more than {MOST_VALUES:,} values of it",
+            "Write out what is meant, without & and *.",
+        )
+    return tree
+
+
+def _size(node: Node, known: dict[int, int]) -> int:
+    """How many values there are once every alias is written out."""
+    if id(node) not in known:
+        inside: Iterable[Node] = ()
+        if isinstance(node, Entries):
+            inside = node.entries.values()
+        elif isinstance(node, Items):
+            inside = node.items
+        known[id(node)] = 1 + sum(_size(each, known) for each in inside)
+    return known[id(node)]
 
 
 def put(tree: Node, keys: tuple[str, ...], value: Node, done: tuple[str, ...] = ()) -> Node:

@@ -190,7 +190,7 @@ def rotation_angle(X_WA: ArrayLike, X_WB: ArrayLike) -> Array:
 
 
 def quaternion_distance(X_WA: ArrayLike, X_WB: ArrayLike) -> Array:
-    """Chordal distance of the orientations: min(|a - b|, |a + b|) of their unit quaternions.
+    """Chordal distance of the orientations: ``min(|a - b|, |a + b|)`` of their quaternions.
 
     It is ``2 sin(angle / 4)``, between 0 and sqrt(2); (..., 4, 4) twice to (...).
     """

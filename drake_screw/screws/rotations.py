@@ -97,7 +97,7 @@ def quaternion_from_rotation(R: ArrayLike) -> Array:
 
 
 def quaternion_from_rotation_vector(w: ArrayLike) -> Array:
-    """Unit quaternion of the rotation by |w| about w; (..., 3) rad to (..., 4)."""
+    """Unit quaternion of the rotation by ``|w|`` about w; (..., 3) rad to (..., 4)."""
     w = np.asarray(w, dtype=float)
     half = 0.5 * np.linalg.norm(w, axis=-1, keepdims=True)
     return np.concatenate([np.cos(half), 0.5 * np.sinc(half / np.pi) * w], axis=-1)

@@ -13,15 +13,13 @@ import json
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.files import (
     csv_text,
-    file_hash,
     fresh_folder,
     make_folder,
     now,
@@ -29,16 +27,18 @@ from drake_screw.files import (
     writing,
 )
 from drake_screw.holding import holding
-from drake_screw.processes import WorkerLost, share_out
 from drake_screw.runs.begun_with import check_ways_around
-from drake_screw.runs.directory import SCENARIO, versions
+from drake_screw.runs.directory import SCENARIO
 from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
 from drake_screw.scenario.schema import Scenario
+from drake_screw.sharing import Workers
 from drake_screw.studies.experiment import Experiment, StudyRun, check_runs, split
 from drake_screw.studies.figures import Distribution, save_distributions
 from drake_screw.studies.hidden_failures import draw_hidden_failure
+from drake_screw.studies.shared_runs import check_unchanged, hashes, shared_runs
 from drake_screw.studies.table import HEADER, read_runs, row, summary_csv
 from drake_screw.typing import PathLike
+from drake_screw.versions import versions
 
 FORMAT = 1
 STUDY, RUNS, SUMMARY = "study.json", "runs.csv", "summary.csv"
@@ -79,28 +79,28 @@ class Study:
         """The runs in the table, sorted by K and number."""
         return tuple(sorted(read_runs(self.path / RUNS), key=lambda run: (run.K, run.run)))
 
-    def carry_out(self, workers: int | None = None) -> Iterator[StudyRun]:
+    def carry_out(self, workers: Workers = None) -> Iterator[StudyRun]:
         """Carry out the runs that are missing, then write summary and pictures.
 
         Interrupting it leaves a directory that can be carried on; at most the runs in progress are
         lost.
 
         Args:
-            workers: processes to use, with one thread each; as many as processors if None. They
-                make no difference to the result.
+            workers: processes to use, with one thread each, as many as processors if None; or a
+                cluster. They make no difference to the result.
 
         Yields:
             Each run as it is finished.
 
         Raises:
             RunDirectoryError: the table is damaged or cannot be written, another process is at work
-                on the study, one that shared the work was killed, or
+                on the study, processes that shared the work were killed or a cluster is lost, or
                 runs are missing and OMPL is installed where it was not, or is not where it was.
         """
         with holding(self.path, "study"):
             yield from self._carried_out(workers)
 
-    def _carried_out(self, workers: int | None) -> Iterator[StudyRun]:
+    def _carried_out(self, workers: Workers) -> Iterator[StudyRun]:
         finished = self.finished_runs()
         table = self.path / RUNS
         done = {(run.K, run.run) for run in finished}
@@ -113,7 +113,7 @@ class Study:
         self._save("running")
         try:
             with table.open("a") as lines:
-                for run in self._results(missing, workers):
+                for run in shared_runs(self.experiment, missing, workers, self.path):
                     with writing(table, _UNWRITABLE):
                         lines.write(csv_text([row(run)]))
                         lines.flush()
@@ -136,27 +136,6 @@ class Study:
             for K, of_K in chosen.items()
             if of_K
         }
-
-    def _results(
-        self, missing: Sequence[tuple[int, int]], workers: int | None
-    ) -> Iterator[StudyRun]:
-        """Runs as they are finished; the arm's code is compiled here, and only once."""
-        first = int(not all(one.batch_planner.compiled for one in self.experiment.setup.arms))
-        for K, run in missing[:first]:
-            yield self.experiment.run(K, run)
-        build = (
-            partial(_experiment, self.path / SCENARIO) if workers != 1 else lambda: self.experiment
-        )
-        shared = share_out(_carry_out, missing[first:], build=build, workers=workers)
-        try:
-            for _, finished in shared:
-                yield finished
-        except WorkerLost as error:
-            raise RunDirectoryError(
-                f"{error.message}; this study is not finished",
-                remedy="Carry it on with --resume and fewer --workers.",
-                file=self.path,
-            ) from error
 
     def _conclude(self) -> None:
         runs, summary = self.finished_runs(), self.summary()
@@ -211,7 +190,7 @@ def new_study(
         "seed": scenario.seed,
         "strategy": scenario.coverage.strategy,
         "model": str(model),
-        "hashes": _hashes(setup),
+        "hashes": hashes(setup),
         "led_around": setup.leads_around,
         "versions": versions(),
         "started": now(),
@@ -221,10 +200,8 @@ def new_study(
     place = studies if output is None else Path(output)
     with writing(place, remedy="Choose a folder you may write to with --output."):
         path = fresh_folder(studies) if output is None else Path(output)
-        make_folder(path, "study")
-        write_text(path / SCENARIO, dump_scenario(scenario))
-        write_text(path / RUNS, csv_text([HEADER]))
-        write_text(path / STUDY, json.dumps(record, indent=2) + "\n")
+        texts = dump_scenario(scenario), csv_text([HEADER]), json.dumps(record, indent=2) + "\n"
+        make_folder(path, "study", dict(zip((SCENARIO, RUNS, STUDY), texts, strict=True)))
     return Study(path, load_stored_scenario(path / SCENARIO), record)
 
 
@@ -239,15 +216,19 @@ def open_study(path: PathLike) -> Study:
     if not file.is_file():
         raise RunDirectoryError(
             f"not a study directory: it has no {STUDY}",
-            remedy="Give the folder that a study printed.",
+            remedy="Give the folder that a study printed. One that was ended before it had begun "
+            "can be given to --output again.",
             file=path,
         )
     try:
         record = json.loads(file.read_text())
-        found, hashes = record["format"], dict(record["hashes"])
-        if not {"regions", "runs"} <= record.keys() or "model" not in hashes:
+        found, known = record["format"], dict(record["hashes"])
+        numbers = [record["runs"], *record["regions"]]
+        if "model" not in known or len(numbers) < 2:
             raise KeyError("keys are missing")
-    except (ValueError, KeyError, TypeError) as error:
+        if not all(type(number) is int and number >= 1 for number in numbers):
+            raise ValueError("regions and runs are not whole numbers from 1")
+    except (ValueError, KeyError, TypeError, RecursionError, OSError) as error:
         raise RunDirectoryError(
             f"damaged: {error}", remedy="Restore it, or begin the study again.", file=file
         ) from error
@@ -258,33 +239,5 @@ def open_study(path: PathLike) -> Study:
             file=file,
         )
     study = Study(path, load_stored_scenario(path / SCENARIO), record)
-    setup = study.experiment.setup
-    now = _hashes(setup)
-    for name, used in _files(setup).items():
-        if now[name] != hashes.get(name):
-            what = "mesh" if name in setup.meshes else "robot model"
-            what = "SRDF" if name in setup.srdf else what
-            raise RunDirectoryError(
-                f"the {what} {used} has changed since this study began",
-                remedy="Put the file back as it was, or begin the study again.",
-                file=path,
-            )
+    check_unchanged(study.experiment.setup, known, path)
     return study
-
-
-def _files(setup: PlanningSetup) -> dict[str, Path]:
-    return {"model": setup.workcell.model_file} | setup.srdf | setup.meshes
-
-
-def _hashes(setup: PlanningSetup) -> dict[str, str]:
-    """Of what was read of the robot's model, and of the meshes around it."""
-    others = {name: file_hash(file) for name, file in (setup.srdf | setup.meshes).items()}
-    return {"model": setup.workcell.model.hash} | others
-
-
-def _experiment(scenario: Path) -> Experiment:
-    return Experiment(load_stored_scenario(scenario))
-
-
-def _carry_out(experiment: Experiment, job: tuple[int, int]) -> StudyRun:
-    return experiment.run(*job)

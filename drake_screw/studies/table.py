@@ -33,7 +33,7 @@ def read_runs(file: Path) -> tuple[StudyRun, ...]:
         if tuple(header) != HEADER:
             raise ValueError("unknown columns")
         return tuple(_parsed(cells) for cells in rows)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, csv.Error) as error:
         raise RunDirectoryError(
             f"damaged: {error}", remedy="Restore it, or begin the study again.", file=file
         ) from error

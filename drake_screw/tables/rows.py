@@ -44,6 +44,14 @@ class Rows:
             self._file.readinto(found[begin:end].data)
         return found
 
+    def blocks(self) -> Iterator[Array]:
+        """The rows again (m, width), as they were added."""
+        for begin, end in pairwise(self._ends):
+            block = np.empty((self._width, end - begin))
+            self._file.seek(8 * self._width * begin)
+            self._file.readinto(block.data)
+            yield block.T
+
 
 class Columns(Mapping[str, Array]):
     """Columns of rows by their names, made when they are asked for; of a name's the first."""

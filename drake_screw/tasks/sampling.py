@@ -44,7 +44,7 @@ def uniform(
         start, count: which items.
 
     Returns:
-        (count, *width).
+        ``(count, *width)``.
     """
     if count == 0:
         return np.empty((0, *width))

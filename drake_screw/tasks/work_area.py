@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from drake_screw.screws import inverse, pose, pose_from_planar
 from drake_screw.tasks.object_area import ObjectArea
@@ -132,9 +131,10 @@ class WorkArea:
         whole = self._whole(coordinates)
         X = pose_from_planar(whole[..., :PLANAR], whole[..., PLANAR])
         for i in np.flatnonzero(self._tilts).tolist():
-            turns = whole[..., i, [YAW, PITCH, ROLL]]
-            R = Rotation.from_euler("ZYX", turns.reshape(-1, 3)).as_matrix()
-            X[..., i, :3, :3] = R.reshape(*turns.shape[:-1], 3, 3)
+            from scipy.spatial.transform import Rotation  # takes long to import
+
+            R = Rotation.from_euler("ZYX", whole[..., i, [YAW, PITCH, ROLL]].reshape(-1, 3))
+            X[..., i, :3, :3] = R.as_matrix().reshape(*X.shape[:-3], 3, 3)
         for i, parent in self._standing:
             X[..., i, :, :] = X[..., parent, :, :] @ X[..., i, :, :]
         return X

@@ -20,6 +20,7 @@ from drake_screw.visualization.screw_drawing import (
     looks_straight,
     screw_track,
 )
+from drake_screw.visualization.unreachable import Unreachable, explain
 
 DONE, FAILED, AHEAD = "done", "failed", "never reached"
 
@@ -102,6 +103,13 @@ class Attempt:
     def screws(self) -> Screw:
         """The constant screw of each segment, arrays (g,); a free approach does not follow it."""
         return screw_between(self.starts, self.guides)
+
+    @cached_property
+    def unreachable(self) -> Unreachable | None:
+        """Why the end effector got no farther; None where that is not how the plan ended."""
+        if self.cause != Cause.UNREACHABLE:
+            return None
+        return explain(self.arm, self.plan, self.starts)
 
     @cached_property
     def margin(self) -> Array:
@@ -208,10 +216,9 @@ def headline(attempt: Attempt) -> str:
     if attempt.cause == Cause.COLLISION:
         touching = "; ".join(touch_words(pair, attempt.clearance) for pair in attempt.bodies[:2])
         return f"fails{of} {where}: {touching or 'the arm touches something'}"
-    return (
-        f"fails{of} {where}: the end effector gets no farther along this screw; the arm is "
-        "stretched out or near a singular pose"
-    )
+    if attempt.unreachable is None:
+        return f"fails{of} {where}: {attempt.cause.name.lower()}"
+    return f"fails{of} {where}: unreachable, {attempt.unreachable.words}"
 
 
 def _turns(attempt: Attempt) -> str:

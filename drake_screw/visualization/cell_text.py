@@ -41,7 +41,7 @@ def write_estimates(ax: Axes, drawn: Cells, event: Round, *, mean: bool = False)
         x, y = _clear_spot(drawn.lower[cell], drawn.upper[cell], marks, text, gap)
         value = float(drawn.mean[cell] if mean else verdict.estimates[region])
         background = failure_color(value)
-        behind = {"boxstyle": "round,pad=0.1", "fc": tuple(background), "lw": 0, "alpha": 0.75}
+        behind = {"boxstyle": "round,pad=0.1", "fc": tuple(background), "lw": 0, "alpha": 0.9}
         style = {"color": ink_on(background), "ha": "center", "zorder": 6, "bbox": behind}
         known = not np.isnan(value) and (mean or verdict.samples[region] > 0)
         estimate = f"{value:.3f}" if known else "?"

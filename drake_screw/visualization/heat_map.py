@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
@@ -32,8 +31,9 @@ from drake_screw.visualization.palette import (
     PAPER,
     failure_color,
     failure_map,
+    failure_norm,
 )
-from drake_screw.visualization.rounds import Round, Sample, sample
+from drake_screw.visualization.rounds import Round, Sample, sample, weakest
 
 MOST_DOTS = 1500
 SHAPES = {
@@ -95,13 +95,15 @@ def draw_heat_map(
     if event.suggestion is not None:
         x, y = drawn.place(event.suggestion.coordinates)
         look = _marker("*", ACCENT, 19.0 if text else 11.0, INK)
-        ax.plot(y, x, **look, zorder=8, gid="suggestion")
+        ax.plot(y, x, **look, clip_on=False, zorder=8, gid="suggestion")
     return shown
 
 
 def add_colour_bar(figure: Figure, ax: Axes) -> None:
     """The scale of failure probability, 0 to 1, filling `ax`."""
-    bar = figure.colorbar(ScalarMappable(Normalize(0.0, 1.0), failure_map()), cax=ax)
+    ticks = [0.0, 0.01, 0.05, 0.1, 0.2, 0.5, 1.0]
+    scale = ScalarMappable(failure_norm(), failure_map())
+    bar = figure.colorbar(scale, cax=ax, ticks=ticks, format="{x:g}")
     bar.set_label("failure probability", fontsize=9, color=INK)
     ax.tick_params(labelsize=8)
 
@@ -115,7 +117,8 @@ def legend_handles(
         for cause, name in OUTCOME_NAMES.items()
         if shown.count(cause)
     ]
-    handles.append(Patch(fill=False, edgecolor=INK, linewidth=2.2, label="weakest region"))
+    if weakest(event) is not None:
+        handles.append(Patch(fill=False, edgecolor=INK, linewidth=2.2, label="weakest region"))
     if event.demonstrations:
         handles.append(Line2D([], [], **_marker("o", PAPER, 10.0, INK), label="demonstration"))
     if event.suggestion is not None:
@@ -158,7 +161,10 @@ def _draw_cells(ax: Axes, drawn: Cells, event: Round, mean: bool) -> None:
         box = {"xy": (y0, x0), "width": y1 - y0, "height": x1 - x0}
         color = tuple(failure_color(estimates[cell]))
         ax.add_patch(Rectangle(**box, facecolor=color, edgecolor=GRID, gid=f"cell{cell}"))
-    (x0, y0), (x1, y1) = drawn.outlines[event.verdict.region]
+    region = weakest(event)
+    if region is None:
+        return
+    (x0, y0), (x1, y1) = drawn.outlines[region]
     for edge, line, gid in ((PAPER, 5.0, "halo"), (INK, 2.4, "weakest")):
         style = {"edgecolor": edge, "linewidth": line, "gid": gid}
         frame = Rectangle((y0, x0), y1 - y0, x1 - x0, **style, fill=False, zorder=5)

@@ -4,7 +4,8 @@ Under ``/attempts/01`` and so on, one for each demonstration drawn: ``segments/0
 effector's path), ``axes/01``, ... (the screws), ``frames`` (the guiding poses), ``turned`` (how
 symmetric objects are turned), ``ghost`` (the arm where the plan failed, and under
 ``ghost/touching`` the bodies that touch there) and ``dial`` (the range of the joint at its limit,
-with a needle). Under ``/instance`` the objects. The robot itself is the one of `Scene`, at
+with a needle). Under ``/copies/01`` and so on the arm once more, translucent, to be shown beside
+another attempt. Under ``/instance`` the objects. The robot itself is the one of `Scene`, at
 ``/workcell``.
 """
 
@@ -17,15 +18,19 @@ import numpy as np
 from pydrake.geometry import Meshcat
 
 from drake_screw.robot import Arm, ObjectConfig, Workcell
+from drake_screw.tasks import Symmetry
 from drake_screw.typing import Array
 from drake_screw.visualization import meshes, screw_shapes
 from drake_screw.visualization.attempt import AHEAD, DONE, FAILED, Attempt
 from drake_screw.visualization.drawing import draw, draw_frames
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.palette import INK, PAPER, STATUS_COLORS
+from drake_screw.visualization.reach_drawing import draw_reach
+from drake_screw.visualization.rim_marks import mark_angles
 from drake_screw.visualization.screw_drawing import draw_screw
 
 BOWL = "#f4c95d"
+COPY, COPY_OPACITY = "#0072b2", 0.45
 GHOST_OPACITY, AHEAD_OPACITY, TOUCHING_OPACITY = 0.22, 0.35, 0.6
 SAMPLES = 120
 DIAL = (0.110, 0.145)
@@ -42,12 +47,14 @@ class Drawn:
         path: where.
         samples: (m,) the points of the plan that the arm can be shown at.
         moving: paths of what moves along the plan, with X_WL (m, 4, 4) of each.
+        copied: links of ``/workcell`` that are drawn once more, under the same names.
     """
 
     attempt: Attempt
     path: str
     samples: Array
     moving: dict[str, Array]
+    copied: tuple[str, ...] = ()
 
 
 class Inspector:
@@ -57,28 +64,44 @@ class Inspector:
         meshcat: drawn into.
         workcells: of each arm that is planned for.
         objects: how the objects look.
+        symmetries: of each object; none has any where left out.
     """
 
     def __init__(
-        self, meshcat: Meshcat, workcells: Sequence[Workcell], objects: Sequence[ObjectConfig]
+        self,
+        meshcat: Meshcat,
+        workcells: Sequence[Workcell],
+        objects: Sequence[ObjectConfig],
+        symmetries: Sequence[Symmetry | None] = (),
     ) -> None:
         self.meshcat = meshcat
         self._workcells = tuple(workcells)
         self._linkages = tuple(Linkage(workcell) for workcell in workcells)
         self._objects = tuple(objects)
+        self._symmetries = tuple(symmetries) or (None,) * len(self._objects)
         self.clear()
 
     def clear(self) -> None:
         """Remove all attempts and the instance."""
         self.meshcat.Delete("/attempts")
+        self.meshcat.Delete("/copies")
         self.meshcat.Delete("/instance")
 
     def show_instance(self, X_WO: Array) -> None:
-        """Draw the objects at X_WO (k, 4, 4) in place of those before."""
+        """Draw the objects at X_WO (k, 4, 4) in place of those before, marked on their rims."""
         self.meshcat.Delete("/instance")
-        for item, X in zip(self._objects, X_WO, strict=True):
+        for item, symmetry, X in zip(self._objects, self._symmetries, X_WO, strict=True):
             bowl = meshes.bowl(item.radius, item.height).moved(X)
             draw(self.meshcat, f"/instance/{item.name}", bowl, BOWL)
+            angles, lift = mark_angles(symmetry), np.eye(4)
+            lift[2, 3] = item.height
+            if angles is not None:
+                marks = [
+                    screw_shapes.sector(item.radius - 0.012, item.radius + 0.012, a, b, 0.008)
+                    for a, b in zip(angles - 0.08, angles + 0.08, strict=True)
+                ]
+                mark = meshes.join(marks).moved(X @ lift)
+                draw(self.meshcat, f"/instance/{item.name}/turn", mark, INK)
 
     def aim(self, X_WO: Array) -> None:
         """Point the camera at the objects at X_WO (k, 4, 4), with the arm in the picture."""
@@ -106,8 +129,13 @@ class Inspector:
         names = [linkage.arm.joint_names for linkage in self._linkages]
         return names.index(arm.joint_names)
 
-    def draw(self, attempt: Attempt) -> Drawn:
-        """Draw an attempt in place of an earlier one with the same demonstration."""
+    def draw(self, attempt: Attempt, *, copy: bool = False) -> Drawn:
+        """Draw an attempt in place of an earlier one with the same demonstration.
+
+        Args:
+            attempt: what to draw.
+            copy: draw the arm once more, hidden, to be shown beside another attempt.
+        """
         path = f"/attempts/{attempt.number + 1:02d}"
         self.meshcat.Delete(path)
         for segment, status in enumerate(attempt.status):
@@ -130,12 +158,18 @@ class Inspector:
             touching = [name for pair in attempt.bodies for name in pair]
             place = f"{path}/ghost/touching"
             linkage.draw_bodies(self.meshcat, place, touching, positions, color, TOUCHING_OPACITY)
+        if attempt.unreachable is not None:
+            draw_reach(self.meshcat, f"{path}/ghost/reach", attempt.unreachable)
         if attempt.failed_joint is not None:
             moving |= self._draw_dial(f"{path}/dial", attempt, attempt.failed_joint, q)
             X_WJ = linkage.joint_frames(attempt.failed_joint, attempt.plan.q[-1:])[0]
             ring = meshes.ring(RING, 0.012).moved(X_WJ)
             draw(self.meshcat, f"{path}/ghost/joint", ring, STATUS_COLORS[FAILED])
-        return Drawn(attempt, path, samples, moving)
+        if copy:
+            place = f"/copies/{attempt.number + 1:02d}"
+            linkage.draw_copy(self.meshcat, place, q[0], COPY, COPY_OPACITY)
+            self.meshcat.SetProperty(place, "visible", False)
+        return Drawn(attempt, path, samples, moving, linkage.names if copy else ())
 
     def _draw_turns(self, path: str, attempt: Attempt) -> None:
         """Around every symmetric object an arc from where it stood to where it is turned to."""

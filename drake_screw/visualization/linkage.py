@@ -17,7 +17,6 @@ from pydrake.geometry import (
 )
 from pydrake.geometry import Mesh as MeshShape
 from pydrake.multibody.tree import BodyIndex
-from scipy.spatial import ConvexHull
 
 from drake_screw.robot import Arm, Workcell
 from drake_screw.robot.shapes import vertices
@@ -161,6 +160,8 @@ def _without_looks(shape: Shape) -> Mesh | None:
             [surface.element(f).vertex(k) for k in range(3)] for f in range(surface.num_triangles())
         ]
     else:
+        from scipy.spatial import ConvexHull  # takes long to import
+
         corners = vertices(shape.GetConvexHull())
         faces = ConvexHull(corners).simplices
     return Mesh(corners, np.asarray(faces, dtype=np.int32))

@@ -10,11 +10,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 _NOTHING = Markup()
-_WIDTH = '<meta name="viewport" content="width=device-width, initial-scale=1">'
+_VIEWPORT = Markup('<meta name="viewport" content="width=device-width, initial-scale=1">')
 
 
 def add_to_page(page: str, html: Markup, *, title: str, head: Markup = _NOTHING) -> str:
-    """Meshcat's page as wide as the screen, with a title and HTML at the end of its body.
+    """Meshcat's page with a title of its own, as wide as the screen, and HTML at its body's end.
 
     Args:
         page: as Meshcat serves it, or as `Meshcat.StaticHtml` gives it.
@@ -23,7 +23,7 @@ def add_to_page(page: str, html: Markup, *, title: str, head: Markup = _NOTHING)
         head: to begin the page's head with.
     """
     page = page.replace("<title>Drake MeshCat</title>", f"<title>{escape(title)}</title>", 1)
-    page = page.replace("<head>", f"<head>\n{_WIDTH}\n{head}", 1)
+    page = page.replace("<head>", f"<head>\n{_VIEWPORT}\n{head}", 1)
     before, end, after = page.rpartition("</body>")
     return f"{before}{html}{end}{after}"
 

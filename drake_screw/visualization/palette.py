@@ -17,7 +17,7 @@ from drake_screw.typing import Array
 from drake_screw.visualization.attempt import AHEAD, DONE, FAILED
 
 if TYPE_CHECKING:
-    from matplotlib.colors import Colormap
+    from matplotlib.colors import Colormap, Normalize
 
 OUTCOME_COLORS = MappingProxyType(
     {
@@ -70,16 +70,27 @@ def failure_map() -> Colormap:
     return mpl.colormaps["BuPu"].with_extremes(bad=UNKNOWN)
 
 
+def failure_norm() -> Normalize:
+    """Takes failure probabilities to places in `failure_map`: by their square root.
+
+    A run is about the small ones, 0.01 beside 0.05 beside 0.2, which would all be nearly white.
+    """
+    from matplotlib.colors import PowerNorm
+
+    return PowerNorm(0.5, 0.0, 1.0)
+
+
 def failure_color(probability: ArrayLike) -> Array:
     """sRGB of failure probabilities in [0, 1] or NaN; (...) to (..., 3)."""
-    return np.array(failure_map()(np.ma.masked_invalid(probability)))[..., :3]
+    place = np.sqrt(np.asarray(probability, dtype=float))
+    return np.array(failure_map()(np.ma.masked_invalid(place)))[..., :3]
 
 
 def failure_scale() -> list[str]:
-    """Hexadecimal colours of failure probabilities from 0 to 1, for a scale in HTML."""
+    """Hexadecimal colours for a scale in HTML, even in the square root of the probability."""
     from matplotlib.colors import to_hex
 
-    return [to_hex(color) for color in failure_color(np.linspace(0.0, 1.0, 9))]
+    return [to_hex(color) for color in failure_color(np.linspace(0.0, 1.0, 9) ** 2)]
 
 
 def ink_on(rgb: ArrayLike) -> str:

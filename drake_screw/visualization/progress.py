@@ -27,6 +27,7 @@ from drake_screw.visualization.palette import INK, OUTCOME_COLORS, failure_map
 from drake_screw.visualization.rounds import Round, Sample, mean_failure
 
 COLUMNS = 3
+WIDTH = 11.0  # inches
 DOTS = 400
 
 
@@ -36,6 +37,7 @@ def draw_progress(
     regions: Sequence[Regions] | None = None,
     *,
     beta: float | None = None,
+    narrow: bool = False,
 ) -> None:
     """Draw into `ax` the failure probability of each round, of the weakest region and of all.
 
@@ -48,6 +50,7 @@ def draw_progress(
         events: at least one round, in order.
         regions: those of each round; None if they are equally large.
         beta: coverage asked for; draws the line 1 - beta that must not be exceeded.
+        narrow: `ax` has room for two columns of its legend only, which is above it.
     """
     numbers = [event.round + 1 for event in events]
     estimates, lower, upper = (
@@ -66,19 +69,19 @@ def draw_progress(
     ]
     style = {"color": INK, "marker": ".", "linestyle": ":", "gid": "mean"}
     ax.plot(numbers, means, **style, label="all regions together")
-    ax.legend(fontsize=8, frameon=False, loc="upper right")
     if beta is not None:
-        ax.axhline(1.0 - beta, color=INK, linestyle="--", linewidth=1.0, gid="goal")
-        place = {"transform": ax.get_yaxis_transform(), "va": "bottom", "fontsize": 8}
-        ax.text(0.005, 1.01 - beta, f"asked for: at most {1.0 - beta:g}", color=INK, **place)
+        words = f"asked for: at most {1.0 - beta:g}"
+        ax.axhline(1.0 - beta, color=INK, linestyle="--", linewidth=1.0, gid="goal", label=words)
     done = [event.round + 1 for event in events if event.verdict.certified]
     if done:
         place = estimates[numbers.index(done[-1])]
         star = {"marker": "o", "markersize": 10, "color": OUTCOME_COLORS[Cause.SUCCESS]}
-        ax.plot(done[-1], place, **star, linestyle="", zorder=4, gid="certified")
-        ax.annotate("certified", (done[-1], place), (0, 9), textcoords="offset points", fontsize=8)
+        star |= {"linestyle": "", "label": "certified"}
+        ax.plot(done[-1], place, **star, zorder=4, gid="certified")
+    legend = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2 if narrow else 4}
+    ax.legend(fontsize=8, frameon=False, **legend)
     ax.set_xlim(min(numbers) - 0.5, max(numbers) + 0.5)
-    ax.set_ylim(0.0, 1.03)
+    ax.set_ylim(-0.04, 1.04)
     ax.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     ax.set_xlabel("round", fontsize=9, color=INK)
     ax.set_ylabel("failure probability", fontsize=9, color=INK)
@@ -95,7 +98,9 @@ def run_figure(
     things: Sequence[Outline] = (),
     axes: PlaneAxes | None = None,
 ) -> Figure:
-    """Small heat maps of all rounds above the progress of the weakest region.
+    """Small heat maps of all rounds, and the progress of the weakest region.
+
+    The progress fills what the last row of maps leaves, or has a row of its own.
 
     Args:
         events: at least one round, in order.
@@ -105,18 +110,20 @@ def run_figure(
         things: obstacles in the work area or near it.
         axes: of the heat maps, `usual_axes` if None.
     """
-    columns = min(COLUMNS, len(events))
-    rows = -(-len(events) // columns)
     drawn = cells(regions[0], events[0].verdict.estimates, axes)
     lower, upper = extent(drawn, things)
     depth, width = upper - lower
-    row = float(np.clip(3.4 * depth / max(width, 1e-9), 0.9, 3.4)) + 0.55
-    row = row if drawn.from_above else 2.8
-    figure = Figure(figsize=(11.0, rows * row + 3.4), layout="constrained")
+    shape = float(depth / max(width, 1e-9)) if drawn.from_above else 0.6
+    columns = _columns(len(events), shape)
+    rows, left = -(-len(events) // columns), -len(events) % columns
+    row = float(np.clip((WIDTH - 1.4) / columns * shape, 0.9, 4.2)) + 0.65
+    heights = [row] * rows + ([] if left else [1.8 if len(events) == 1 else 2.6])
+    heights[-1] = max(heights[-1], 2.6) if left else heights[-1]
+    figure = Figure(figsize=(WIDTH, sum(heights) + 1.1), layout="constrained")
     grid = figure.add_gridspec(
-        rows + 1,
+        len(heights),
         columns + 1,
-        height_ratios=[row] * rows + [2.2],
+        height_ratios=heights,
         width_ratios=[1] * columns + [0.03],
     )
     shown: list[tuple[Round, Sample]] = []
@@ -131,11 +138,12 @@ def run_figure(
         title = f"round {event.round + 1}: {count} demonstration{'' if count == 1 else 's'}"
         ax.set_title(title, fontsize=9, color=INK)
         ax.tick_params(labelsize=7)
-        if drawn.in_world:
-            ax.set_xlabel("")
-            ax.set_ylabel("")
+        ax.set_xlabel(drawn.label(1), fontsize=7.5, color=INK)
+        ax.set_ylabel(drawn.label(0), fontsize=7.5, color=INK)
     add_colour_bar(figure, figure.add_subplot(grid[:rows, columns]))
-    draw_progress(figure.add_subplot(grid[rows, :]), events, regions, beta=beta)
+    place = grid[-1, columns - left : columns] if left else grid[rows, :]
+    narrow = 0 < left * WIDTH / columns < 6.0
+    draw_progress(figure.add_subplot(place), events, regions, beta=beta, narrow=narrow)
     if scenario:
         figure.suptitle(scenario, fontsize=13, fontweight="bold", color=INK, x=0.01, ha="left")
     seen = {h.get_label(): h for event, s in shown for h in legend_handles(event, s, things)}
@@ -151,6 +159,13 @@ def run_figure(
         title_fontsize=8.5,
     )
     return figure
+
+
+def _columns(rounds: int, shape: float) -> int:
+    """How many maps, of so much height for a unit of width, are beside one another."""
+    if rounds == 1:
+        return 1 if shape < 0.5 else 2
+    return rounds if rounds <= COLUMNS else 2 if rounds == 4 else COLUMNS
 
 
 def save_run_figure(

@@ -107,9 +107,31 @@ def headline(event: Round) -> str:
     return f"round {event.round + 1}, {count} demonstration{'' if count == 1 else 's'}: {verdict}"
 
 
+def weakest(event: Round) -> int | None:
+    """The weakest region of a round; None where no instance fails, as none is weaker then."""
+    return event.verdict.region if event.verdict.failures.any() else None
+
+
 def details(event: Round, regions: Regions) -> str:
     """The weakest region of a round and the strategy's reason."""
-    return f"weakest region: {regions.name(event.verdict.region)}; {event.verdict.reason}"
+    region = weakest(event)
+    if region is None:
+        return f"no instance fails; {event.verdict.reason}"
+    return f"weakest region: {regions.name(region)}; {event.verdict.reason}"
+
+
+def bounds_over(verdict: Verdict, beta: float) -> str:
+    """Why a certified round has upper bounds over 1 - beta; "" where it has none."""
+    over = int(np.count_nonzero(verdict.upper > 1.0 - beta + 1e-12))
+    if not verdict.certified or not over:
+        return ""
+    K = len(verdict.upper)
+    of = f"{over} of {K} regions" if K > 1 else "this region"
+    return (
+        f"The upper bound of {of} is over 1 - beta = {1.0 - beta:.6g} although the round is "
+        "certified: the bounds are two-sided and hold for all regions at once, and are wider for "
+        "it than the strategy's own test, on which the certificate rests."
+    )
 
 
 def mean_failure(verdict: Verdict, regions: Regions | None) -> float:

@@ -37,7 +37,7 @@ from drake_screw.visualization.palette import (
     failure_color,
     linear_from_srgb,
 )
-from drake_screw.visualization.rounds import Round, Sample, sample
+from drake_screw.visualization.rounds import Round, Sample, sample, weakest
 from drake_screw.visualization.workcell_drawing import draw_workcell
 
 MOST_DOTS = 6_000
@@ -201,7 +201,10 @@ class Scene:
 
     def _draw_regions(self, path: str, drawn: Cells, event: Round) -> None:
         z = self._draw_tiles(f"{path}/regions", drawn, event.verdict.estimates)
-        lower, upper = drawn.outlines[event.verdict.region]
+        region = weakest(event)
+        if region is None:
+            return
+        lower, upper = drawn.outlines[region]
         X_WP = self._X_WP(drawn.object)
         inner = meshes.frame(lower, upper, z + 0.001, 0.014).moved(X_WP)
         outer = meshes.frame(lower, upper, z + 0.0015, 0.008).moved(X_WP)

@@ -49,6 +49,7 @@ def attempt_record(attempt: Attempt) -> dict[str, Any]:
         "segment": attempt.failed_segment,
         "fraction": None if attempt.plan.success else float(outcome.fraction),
         "joint": None if at is None else arm.joint_names[at],
+        "unreachable": _unreachable(attempt),
         "touching": [list(pair) for pair in attempt.bodies],
         "turned": {turn.body: turn.angle for turn in attempt.turned},
         "least_margin": {"joint": arm.joint_names[joint], "margin": _of(margin)},
@@ -75,6 +76,23 @@ def attempt_record(attempt: Attempt) -> dict[str, Any]:
                 strict=True,
             )
         },
+    }
+
+
+def _unreachable(attempt: Attempt) -> dict[str, Any] | None:
+    """Why the end effector got no farther; None where that is not how the attempt ended."""
+    found = attempt.unreachable
+    if found is None:
+        return None
+    wrist = found.wrist
+    return {
+        "missing_travel": found.travel,
+        "missing_turn": found.turn,
+        "least_singular_value": float(found.singular[-1]),
+        "motion_along_the_screw": _of(found.gain[-1]),
+        "shoulder_to_wrist": None if wrist is None else float(found.distance[-1]),
+        "at_the_guiding_pose": _of(found.needed),
+        "reach": None if wrist is None else [wrist.least, wrist.most],
     }
 
 

@@ -6,11 +6,15 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 
+from drake_screw.acquisition import RoundFinished
+from drake_screw.assembly.symmetries import object_symmetries
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.planning.touching import known_pair
 from drake_screw.robot import Workcell
 from drake_screw.runs.reader import RunReader
+from drake_screw.runs.summary import round_in_run
 from drake_screw.tasks import WorkArea
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import (
@@ -20,14 +24,14 @@ from drake_screw.visualization.attempt import (
     describe_segment,
     headline,
 )
-from drake_screw.visualization.inspector import Drawn
+from drake_screw.visualization.inspector import COPY, Drawn
 from drake_screw.visualization.outlines import outlines
-from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
-from drake_screw.visualization.rounds import headline as round_headline
-from drake_screw.visualization.rounds import sample
+from drake_screw.visualization.palette import ACCENT, OUTCOME_COLORS, OUTCOME_NAMES, STATUS_COLORS
+from drake_screw.visualization.rounds import mean_failure, sample
 from drake_screw.visualization.scene import MOST_DOTS
 from drake_screw.visualization.screw_drawing import AXIS
-from drake_screw.web.charts import joint_strip, map_words, work_area_map
+from drake_screw.web.area_map import map_words, work_area_map
+from drake_screw.web.charts import joint_curves, reach_curves, strip
 from drake_screw.web.selection import Selection, steps
 
 KEY = (
@@ -35,6 +39,8 @@ KEY = (
     (STATUS_COLORS[FAILED], "failed: the segment, the arm's ghost, the joint or what touches"),
     (STATUS_COLORS[AHEAD], "never reached"),
     (AXIS, "screw axis; the arrow around it is its turn"),
+    (ACCENT, "where the guiding pose asks for the wrist"),
+    (COPY, "the arm with the demonstration beside"),
 )
 """What the colours of a drawn attempt mean."""
 
@@ -90,10 +96,61 @@ def panel_state(
         "steps": list(steps(reader, selection)),
         "attempts": attempts,
         "selected": selection.demonstration,
-        "headline": round_headline(event),
-        "map": work_area_map(event, regions, here=here, things=outlines(reader.setup.obstacles)),
+        "against": selection.against,
+        "before": _round_before(reader, selection),
+        "headline": round_in_run(event, reader.directory.record),
+        "map": _map(reader, event, here),
         "map_words": map_words(event, sample(event.evaluation, MOST_DOTS), regions),
     }
+
+
+def _round_before(reader: RunReader, selection: Selection) -> dict[str, Any] | None:
+    """The round before the selected one: its map, and what has changed since; None of the first."""
+    if selection.round == 0:
+        return None
+    event, before = reader.event(selection.round), reader.event(selection.round - 1)
+    here, tried = None, ""
+    if selection.instance is not None:
+        here = event.evaluation.coordinates[selection.instance]
+        tried = tried_before(reader.outcomes(selection.round, selection.instance), before)
+    return {
+        "title": f"round {before.round + 1}",
+        "map": _map(reader, before, here),
+        "words": f"{changed(before, event)}{tried}",
+    }
+
+
+def _map(reader: RunReader, event: RoundFinished, here: Array | None) -> Markup:
+    return work_area_map(
+        event,
+        event.regions,
+        here=here,
+        things=outlines(reader.setup.obstacles),
+        symmetries=object_symmetries(reader.setup.scenario),
+    )
+
+
+def changed(before: RoundFinished, event: RoundFinished) -> str:
+    """What part of the work area, and of the worst region, failed in a round and in the next."""
+    parts = [
+        (mean_failure(each.verdict, each.regions), float(np.nanmax(each.verdict.estimates)))
+        for each in (before, event)
+    ]
+    (all0, worst0), (all1, worst1) = parts
+    return (
+        f"round {before.round + 1} → {event.round + 1}: of the work area {all0:.1%} → {all1:.1%} "
+        f"fail, of the worst region {worst0:.1%} → {worst1:.1%}"
+    )
+
+
+def tried_before(found: Outcomes, before: RoundFinished) -> str:
+    """What the demonstrations of an earlier round do at an instance with outcomes (D,)."""
+    earlier = found[: len(before.demonstrations)]
+    if earlier.success.any():
+        return "; this instance succeeds with the demonstrations it had"
+    if (earlier.cause == Cause.NOT_TRIED).any():
+        return ""
+    return "; this instance fails with the demonstrations it had"
 
 
 def attempt_entry(
@@ -144,6 +201,7 @@ def drawn_state(drawn: Drawn) -> dict[str, Any]:
     counts = np.bincount(segment, minlength=len(attempt.guides))
     return {
         "path": drawn.path,
+        "copied": drawn.copied,
         "headline": f"Demonstration {attempt.number + 1} {headline(attempt)}.",
         "color": STATUS_COLORS[DONE if attempt.plan.success else FAILED],
         "segments": [
@@ -162,9 +220,24 @@ def drawn_state(drawn: Drawn) -> dict[str, Any]:
                 "unit": arm.units[j],
                 "lower": None if arm.endless[j] else float(arm.lower[j]),
                 "upper": None if arm.endless[j] else float(arm.upper[j]),
-                "strip": joint_strip(attempt, j, samples),
+                "strip": strip(attempt, curve, samples),
             }
-            for j, name in enumerate(arm.joint_names)
+            for j, (name, curve) in enumerate(
+                zip(arm.joint_names, joint_curves(attempt), strict=True)
+            )
+        ],
+        "reach": [
+            {
+                "name": curve.name,
+                "unit": curve.unit,
+                "strip": strip(attempt, curve, samples),
+                "failed": curve.failed,
+                "bound": curve.bound,
+                "values": [
+                    None if np.isnan(v) else float(f"{v:.4g}") for v in curve.values[samples]
+                ],
+            }
+            for curve in reach_curves(attempt)
         ],
         "q": np.round(attempt.plan.q[samples], 5).tolist(),
         "at": [
@@ -203,6 +276,11 @@ def where(area: WorkArea, coordinates: Array) -> str:
     return ", ".join(
         f"{o.name} at {area.words(i, coordinates)}" for i, o in enumerate(area.objects)
     )
+
+
+def _number(value: float) -> float | None:
+    """To four digits; None where there is none."""
+    return None if np.isnan(value) else float(f"{value:.4g}")
 
 
 def _columns(X: Array) -> list[list[float]]:

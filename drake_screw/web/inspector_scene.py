@@ -6,6 +6,7 @@ from typing import Any
 
 from pydrake.geometry import Meshcat
 
+from drake_screw.assembly.symmetries import object_symmetries
 from drake_screw.runs.pictures import make_scene
 from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.inspector import Drawn, Inspector
@@ -26,13 +27,16 @@ class InspectorScene:
         self.meshcat = meshcat
         self._reader = reader
         self._scene = make_scene(setup, meshcat)
-        self._inspector = Inspector(meshcat, setup.workcells, setup.objects)
+        self._inspector = Inspector(
+            meshcat, setup.workcells, setup.objects, object_symmetries(setup.scenario)
+        )
         self._round: int | None = None
 
     def show(self, selection: Selection, *, live: bool) -> dict[str, Any]:
         """Draw a selection; returns the panel's state.
 
-        A live page gets the selected attempt only, as planning takes its time; a saved page all.
+        A live page gets the attempts that are looked at, as planning takes its time; a saved page
+        all.
         """
         if self._round != selection.round:
             self._show_round(selection)
@@ -60,10 +64,12 @@ class InspectorScene:
         event = self._reader.event(selection.round)
         here = event.evaluation.coordinates[selection.instance]
         self._inspector.show_instance(self._reader.setup.area.X_WO(here))
+        count = len(event.demonstrations)
+        numbers = [d for d in range(count) if d in selection.drawn or not selected_only]
         return {
             number: self._inspector.draw(
-                self._reader.attempt(selection.round, selection.instance, number)
+                self._reader.attempt(selection.round, selection.instance, number),
+                copy=len(numbers) > 1,
             )
-            for number in range(len(event.demonstrations))
-            if number == selection.demonstration or not selected_only
+            for number in numbers
         }

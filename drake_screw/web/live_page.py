@@ -20,6 +20,7 @@ from drake_screw.acquisition import (
     Status,
 )
 from drake_screw.assembly.setup import Setup
+from drake_screw.assembly.symmetries import object_symmetries
 from drake_screw.demonstrations import Demonstration
 from drake_screw.planning import Cause
 from drake_screw.runs.narration import describe
@@ -37,7 +38,8 @@ from drake_screw.visualization.palette import (
     UNKNOWN,
     failure_scale,
 )
-from drake_screw.web.charts import map_words, work_area_map
+from drake_screw.visualization.rounds import details, weakest
+from drake_screw.web.area_map import map_words, work_area_map
 from drake_screw.web.server import PanelServer
 
 REDRAW_PERIOD = 0.15
@@ -182,20 +184,27 @@ class LivePage:
     def _finish_round(self, event: RoundFinished) -> None:
         shown = self._scene.show_round(event, event.regions)
         verdict, number = event.verdict, event.round + 1
-        weakest = verdict.region
+        region = weakest(event)
+        worst = "none fails"
+        if region is not None:
+            worst = f"weakest: region {region}, {verdict.estimates[region]:.2%} fail "
+            worst += f"(at most {verdict.upper[region]:.2%})"
         color = OUTCOME_COLORS[Cause.SUCCESS if verdict.certified else Cause.JOINT_LIMIT]
         line = {
             "number": number,
             "color": color,
-            "words": f"weakest: region {weakest}, {verdict.estimates[weakest]:.2%} fail "
-            f"(at most {verdict.upper[weakest]:.2%}); "
-            f"{len(event.evaluation.region):,} instances",
+            "words": f"{worst}; {len(event.evaluation.region):,} instances",
         }
         self._update(
             headline=f"round {number}: {'certified' if verdict.certified else 'not certified'}",
-            details=f"weakest region {weakest}: {event.regions.name(weakest)}; {verdict.reason}",
+            details=details(event, event.regions),
             color=color,
-            map=work_area_map(event, event.regions, things=outlines(self._setup.obstacles)),
+            map=work_area_map(
+                event,
+                event.regions,
+                things=outlines(self._setup.obstacles),
+                symmetries=object_symmetries(self._setup.scenario),
+            ),
             map_words=f"after round {number}; {map_words(event, shown, event.regions)}",
             rounds=[*self._state["rounds"], line],
         )

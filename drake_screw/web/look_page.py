@@ -15,6 +15,7 @@ from drake_screw.errors import DrakeScrewError
 from drake_screw.files import writable, write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.runs.pictures import make_scene
+from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.visualization.drawing import AXES
 from drake_screw.visualization.figure_files import figure_address
 from drake_screw.visualization.lifetime import scratch
@@ -32,8 +33,13 @@ from drake_screw.visualization.palette import OUTCOME_COLORS, QUIET
 from drake_screw.visualization.screw_drawing import AXIS
 
 
-def write_look_page(looks: Looks, file: Path) -> Path:
+def write_look_page(looks: Looks, file: Path, tell: Tell = to_nobody) -> Path:
     """Write a page with a section for each recording; of a single one, with the scene in 3-D.
+
+    Args:
+        looks: what was looked at.
+        file: to write.
+        tell: told how far it is.
 
     Returns:
         The page.
@@ -41,15 +47,19 @@ def write_look_page(looks: Looks, file: Path) -> Path:
     Raises:
         DrakeScrewError: it cannot be written there.
     """
-    text = look_page(looks)
+    text = look_page(looks, tell)
     with writing(file, writable("--html"), DrakeScrewError):
         write_text(file, text)
     return file
 
 
-def look_page(looks: Looks) -> str:
+def look_page(looks: Looks, tell: Tell = to_nobody) -> str:
     """The page's HTML."""
     summary, setup = looks.summary, looks.setup
+    sections = []
+    for number, (look, found) in enumerate(zip(looks.looks, summary.recordings, strict=True)):
+        tell(Step("drawing recordings", number, len(looks.looks)))
+        sections.append(_section(setup, look, found, scene=not looks.library))
     page = render(
         "drake_screw.web",
         "look.html.j2",
@@ -57,10 +67,7 @@ def look_page(looks: Looks) -> str:
         title=looks.source.resolve().name,
         robot=setup.recorder.robot or setup.scenario.robot.model,
         key=_key(setup),
-        sections=[
-            _section(setup, look, found, scene=not looks.library)
-            for look, found in zip(looks.looks, summary.recordings, strict=True)
-        ],
+        sections=sections,
     )
     return str(page) + "\n"
 

@@ -16,17 +16,18 @@ from drake_screw.files import write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.planning.touching import count_collisions
 from drake_screw.runs.reader import RunReader
-from drake_screw.runs.summary import count_executions
+from drake_screw.runs.summary import count_executions, round_in_run
+from drake_screw.steps import Step, Tell, to_nobody
+from drake_screw.typing import Array
 from drake_screw.visualization.attempt import Attempt, headline
 from drake_screw.visualization.linkage import Linkage
 from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.palette import OUTCOME_COLORS, OUTCOME_NAMES
-from drake_screw.visualization.rounds import details
-from drake_screw.visualization.rounds import headline as round_headline
+from drake_screw.visualization.rounds import bounds_over, details
 from drake_screw.web.arm_sketch import arm_sketch
-from drake_screw.web.charts import joint_chart
+from drake_screw.web.charts import joint_chart, reach_chart
 from drake_screw.web.inspector_page import save_page
-from drake_screw.web.inspector_panel import where
+from drake_screw.web.inspector_panel import changed, where
 from drake_screw.web.selection import Selection, select
 
 PAGES = "inspect"
@@ -38,12 +39,13 @@ OTHERS = 2
 _REMEDY = "A report is written into its run directory; make the folder writable."
 
 
-def write_report(reader: RunReader, folder: Path | None = None) -> Path:
+def write_report(reader: RunReader, folder: Path | None = None, tell: Tell = to_nobody) -> Path:
     """Write report.html, and a 3-D page for an instance of each round into the folder inspect.
 
     Args:
         reader: the run.
         folder: where to; the run directory if None.
+        tell: told how far it is.
 
     Returns:
         The report.
@@ -57,6 +59,7 @@ def write_report(reader: RunReader, folder: Path | None = None) -> Path:
     linkages = tuple(Linkage(workcell) for workcell in reader.setup.workcells)
     rounds = []
     for round in range(reader.rounds):
+        tell(Step("drawing instances", round, reader.rounds))
         selection = select(reader, round)
         page = f"{PAGES}/round_{round + 1:02d}"
         save_page(reader, selection, folder / f"{page}.html")
@@ -116,15 +119,21 @@ def _round(
     """One round: its heat map, its worst regions, and one instance of it looked at closely."""
     event = reader.event(selection.round)
     folder = reader.directory.round_folder(selection.round)
+    before = _rates_before(reader, selection.round)
     return {
         "number": selection.round + 1,
-        "headline": round_headline(event),
+        "headline": round_in_run(event, reader.directory.record),
         "details": details(event, event.regions),
         "executions": str(count_executions(event.evaluation) or ""),
         "collisions": _collisions(reader, event),
         "heat_map": _picture(folder / "heat_map.png"),
         "K": event.regions.K,
-        "regions": _regions(event),
+        "regions": _regions(event, before),
+        "before": before is not None,
+        "changed": ""
+        if selection.round == 0
+        else changed(reader.event(selection.round - 1), event),
+        "bounds": bounds_over(event.verdict, reader.setup.scenario.coverage.beta),
         "instance": _instance(reader, selection, linkages, page),
         "others": _others(reader, selection, linkages),
     }
@@ -136,7 +145,23 @@ def _collisions(reader: RunReader, event: RoundFinished) -> str:
     return str(found) if found.collisions else ""
 
 
-def _regions(event: RoundFinished) -> list[dict[str, Any]]:
+def _rates_before(reader: RunReader, round: int) -> Array | None:
+    """(K,) failure rates in the round before; None of the first, and where regions were others."""
+    if round == 0:
+        return None
+    event, before = reader.event(round), reader.event(round - 1)
+    every = np.arange(event.regions.K)
+    same = before.regions.K == event.regions.K and all(
+        np.allclose(one, other)
+        for one, other in zip(
+            event.regions.bounds(every), before.regions.bounds(every), strict=True
+        )
+    )
+    return before.verdict.estimates if same else None
+
+
+def _regions(event: RoundFinished, before: Array | None) -> list[dict[str, Any]]:
+    """The worst regions of a round, and how they did in the round before if that is known."""
     verdict, regions = event.verdict, event.regions
     return [
         {
@@ -145,6 +170,7 @@ def _regions(event: RoundFinished) -> list[dict[str, Any]]:
             "failed": f"{verdict.failures[j]:,} / {verdict.samples[j]:,}",
             "rate": f"{verdict.estimates[j]:.4f}",
             "at_most": f"{verdict.upper[j]:.4f}",
+            "before": "" if before is None else f"{before[j]:.4f}",
         }
         for j in _worst_first(event)[:WORST]
     ]
@@ -182,6 +208,7 @@ def _instance(
         ],
         "best": best.number + 1,
         "chart": joint_chart(best),
+        "reach": reach_chart(best),
         "sketch": _sketch(best, linkages, setup),
     }
 

@@ -17,12 +17,19 @@ class Selection:
         region: to whose instances the panel's buttons keep; None for those of all regions.
         instance: a row of the round's instances; None if the round has none.
         demonstration: the one tried there; None if the round has none.
+        against: another one, shown beside it; None for none.
     """
 
     round: int
     region: int | None
     instance: int | None
     demonstration: int | None
+    against: int | None = None
+
+    @property
+    def drawn(self) -> frozenset[int]:
+        """The demonstrations that are looked at."""
+        return frozenset(d for d in (self.demonstration, self.against) if d is not None)
 
 
 def select(reader: RunReader, round: int, instance: int | None = None) -> Selection:
@@ -46,7 +53,8 @@ def after_message(reader: RunReader, selection: Selection, message: dict[str, An
     """The selection after a message of the panel; one that means nothing changes nothing.
 
     Messages: ``{"round": r}``, ``{"region": j or null}``, ``{"step": "next"}`` (previous, earliest,
-    suggested), ``{"at": [x, y]}`` in m (the nearest instance), ``{"demonstration": d}``.
+    suggested), ``{"at": [x, y]}`` in m (the nearest instance), ``{"demonstration": d}``,
+    ``{"against": d or null}``.
     """
     match message:
         case {"round": int(round)} if 0 <= round < reader.rounds:
@@ -64,7 +72,14 @@ def after_message(reader: RunReader, selection: Selection, message: dict[str, An
                 return _at_place(reader, replace(selection, region=None), place)
         case {"demonstration": int(number)} if selection.instance is not None:
             if 0 <= number < len(reader.event(selection.round).demonstrations):
-                return replace(selection, demonstration=number)
+                swapped = number == selection.against
+                against = selection.demonstration if swapped else selection.against
+                return replace(selection, demonstration=number, against=against)
+        case {"against": None}:
+            return replace(selection, against=None)
+        case {"against": int(number)} if number != selection.demonstration:
+            if 0 <= number < len(reader.event(selection.round).demonstrations):
+                return replace(selection, against=number)
     return selection
 
 
@@ -92,4 +107,5 @@ def _at_place(reader: RunReader, selection: Selection, place: int) -> Selection:
     """The same round and region at another place of the catalogue, with its best attempt."""
     instance = int(reader.catalogue(selection.round).instance[place])
     best = reader.best(selection.round, instance)
-    return replace(selection, instance=instance, demonstration=best)
+    against = None if best == selection.against else selection.against
+    return replace(selection, instance=instance, demonstration=best, against=against)

@@ -138,3 +138,16 @@ def test_without_demonstrations_everything_fails() -> None:
     evaluation, verdict = evaluator.evaluate(0, (), 1)
     assert evaluation.failed.all()
     assert evaluation.outcomes.shape == (verdict.total_samples, 0)
+
+
+def test_a_round_whose_size_is_known_says_beforehand_how_long_it_is(monkeypatch) -> None:
+    monkeypatch.setattr(module, "BATCH", 37)
+    seen = []
+    evaluator, demonstrations = setup(progress=seen.append)
+    evaluation, verdict = evaluator.evaluate(0, demonstrations, 1)
+    assert len(seen) > 2
+    assert {event.total for event in seen} == {len(evaluation.region)} == {verdict.total_samples}
+    seen.clear()
+    others = replace(evaluator, strategy=make_strategy("eprocess", Goal(0.6, 0.2, 0.1)))
+    others.evaluate(0, demonstrations, 1)
+    assert {event.total for event in seen} == {None}

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from drake_screw.bandits import Goal
+from drake_screw.bandits import Goal, OfFixedSize
 from drake_screw.bandits.naive_pac import NaivePac, most_failures, sample_size
 from tests.bandits.bernoulli import GOAL, arms, worst
 
@@ -106,3 +106,12 @@ def test_every_estimate_is_within_half_epsilon() -> None:
     verdict = NaivePac(GOAL).decide(arms(mu, 3), 16, attempt=1)
     assert (np.abs(verdict.estimates - mu) <= 0.01).all()
     assert ((verdict.lower <= mu) & (mu <= verdict.upper)).all()
+
+
+@pytest.mark.parametrize("spend", [False, True])
+@pytest.mark.parametrize("attempt", [1, 3])
+def test_how_many_samples_a_round_takes_is_known_beforehand(spend: bool, attempt: int) -> None:
+    strategy = NaivePac(Goal(0.8, 0.1, 0.1), spend=spend)
+    verdict = strategy.decide(np.zeros_like, 3, attempt=attempt)
+    assert isinstance(strategy, OfFixedSize)
+    assert strategy.total(3, attempt=attempt) == verdict.total_samples

@@ -184,6 +184,17 @@ class Browser:
             )
         )
 
+    @contextmanager
+    def screen_of(self, width: int, height: int) -> Iterator[None]:
+        """A screen of another size, in pixels."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        try:
+            self.until(lambda: self.ask("return [innerWidth, innerHeight]") == [width, height])
+            yield
+        finally:
+            self.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
     def screen(self) -> np.ndarray:
         """(height, width, 3) sRGB in [0, 1]."""
         return imread(io.BytesIO(self.driver.get_screenshot_as_png()))[..., :3]

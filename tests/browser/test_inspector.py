@@ -11,12 +11,15 @@ from matplotlib.colors import to_rgb
 from drake_screw.runs.run import open_run
 from drake_screw.screws import sclerp_position
 from drake_screw.visualization.attempt import DONE, FAILED
+from drake_screw.visualization.inspector import SAMPLES
 from drake_screw.visualization.palette import STATUS_COLORS
 from drake_screw.web.inspector_page import save_page
 from drake_screw.web.report_page import write_report
 from drake_screw.web.selection import select
 from tests.browser.conftest import Browser, program
 
+Y_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]])
+"""Takes poses in W to the scene's world, which has y up."""
 HAND = "workcell/baxter/left_hand"
 SERVE = """
 import sys
@@ -66,6 +69,117 @@ def near(screen: np.ndarray, at: tuple[int, int], color: str, *, reach: int = 5)
     size = np.linalg.norm(have, axis=1)
     agree = have @ want / np.maximum(size * np.linalg.norm(want), 1e-9)
     return bool(((agree > 0.93) & (size > 0.12)).any())
+
+
+def test_a_saved_page_opens_with_the_arm_where_the_slider_says(browser, page, reader) -> None:
+    selection = select(reader, 1)
+    tried = reader.attempt(1, selection.instance, selection.demonstration)
+    assert tried.failed_segment > 0
+    browser.open(page.as_uri())
+    browser.until(lambda: browser.text("#headline"))
+    place = int(browser.ask("return document.querySelector('#slider').value"))
+    assert place > 0
+    q = tried.plan.q[tried.samples(SAMPLES)[place]]
+    hand = reader.setup.workcells[0].arm.pose(q)
+    placed = browser.still(lambda: browser.node(HAND)["matrix"].round(4).tolist())
+    np.testing.assert_allclose(Y_UP @ hand, placed, atol=1e-3)
+
+
+def test_the_end_of_reach_is_shown_in_numbers_and_on_the_arm(browser, opened, reader) -> None:
+    selection = select(reader, 1)
+    tried = reader.attempt(1, selection.instance, selection.demonstration)
+    found, root = tried.unreachable, f"attempts/{tried.number + 1:02d}/ghost/reach"
+    browser.slide("#slider", int(browser.ask("return document.querySelector('#slider').max")))
+    rows = [browser.text(f"#reach tr:nth-child({i}) td:nth-child(3)").strip() for i in (1, 2, 3)]
+    values = [float(row.split()[0]) for row in rows]
+    expected = [found.gain[-1], found.singular[-1], found.distance[-1]]
+    np.testing.assert_allclose(values, expected, rtol=0.01)
+    assert f"at most {found.wrist.most:.3f} m" in browser.text("#headline")
+    for part in ("shoulder", "wrist", "sphere", "asked"):
+        assert browser.node(f"{root}/{part}")["seen"], part
+    browser.click("#ghost-shown")
+    assert not browser.node(f"{root}/wrist")["seen"]
+
+
+def test_two_demonstrations_are_on_one_slider(browser, opened, reader) -> None:
+    selection = select(reader, 1)
+    first = selection.demonstration
+    second = 1 - first
+    copy = f"copies/{second + 1:02d}"
+    strips = "return document.querySelectorAll('#joints .other').length"
+    assert not browser.node(copy)["seen"]
+    browser.select("#against", second)
+    other = reader.attempt(1, selection.instance, second)
+    browser.slide("#slider", 0)
+    start = browser.node(f"{copy}/baxter/left_hand")
+    assert start["seen"]
+    hand = Y_UP @ other.arm.pose(other.plan.q[:1])[0]
+    np.testing.assert_allclose(start["matrix"], hand, atol=1e-3)
+    assert browser.ask(strips) == 2 * other.arm.n, "a curve and a number for each joint"
+    browser.slide("#slider", int(browser.ask("return document.querySelector('#slider').max")))
+    assert f"demonstration {second + 1}: segment" in browser.text("#where")
+    moved = browser.node(f"{copy}/baxter/left_hand")["matrix"]
+    assert np.linalg.norm(moved[:3, 3] - start["matrix"][:3, 3]) > 0.05
+    browser.click(f"#demonstrations li:nth-child({second + 1})")
+    assert browser.ask("return document.querySelector('#against').value") == str(first)
+    assert browser.node(f"copies/{first + 1:02d}")["seen"]
+    assert not browser.node(copy)["seen"]
+    browser.select("#against", "")
+    assert not browser.node(f"copies/{first + 1:02d}")["seen"]
+    assert browser.ask(strips) == 0
+
+
+def test_the_round_before_is_beside(browser, opened, reader) -> None:
+    assert "the run: insufficient, ended after 2 rounds" in browser.text("#round-headline")
+    browser.click("#before summary")
+    shown = browser.driver.find_element("css selector", "#before-map svg")
+    assert shown.is_displayed()
+    assert browser.text("#before-title") == "round 1"
+    assert browser.text("#before-words").startswith("round 1 → 2: of the work area ")
+    browser.click("#before summary")
+
+
+def test_the_map_lies_as_the_scene_does(browser, opened, reader) -> None:
+    marks = {}
+    for number, demonstration in enumerate(reader.event(1).demonstrations, start=1):
+        marks[number] = browser.pixel(demonstration.X_WO[0, :3, 3])
+    script = """
+        const marks = [...document.querySelectorAll("#map .token")];
+        return marks.map((m) => { const b = m.getBoundingClientRect(); return [b.x, b.y]; });
+    """
+    drawn = np.array(browser.ask(script))
+    across = np.sign(drawn[1] - drawn[0])
+    seen = np.sign(np.subtract(marks[2], marks[1]))
+    assert across[0] == seen[0], "what is to the right on the map is so in 3-D"
+    robot = "return document.querySelector('#map .robot').getBoundingClientRect().bottom"
+    assert browser.ask(robot) < drawn[:, 1].min()
+
+
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (1024, 700)])
+def test_pages_fit_phones_and_laptops(browser, opened, width, height) -> None:
+    with browser.screen_of(width, height):
+        sizes = """
+            return [document.documentElement, panel].map((e) => [e.scrollWidth, e.clientWidth]);
+        """
+        assert all(wide <= room for wide, room in browser.ask(sizes))
+        boxes = {
+            name: browser.ask(
+                "const b = document.querySelector(arguments[0]).getBoundingClientRect();"
+                "return [b.left, b.top, b.right, b.bottom]",
+                name,
+            )
+            for name in ("#panel", "#meshcat-pane", "#track", "#key", "#play", "#where")
+        }
+        for name, (left, top, right, bottom) in boxes.items():
+            assert 0 <= left < right <= width, name
+            assert 0 <= top < bottom <= height, name
+        left, top, right, bottom = boxes["#meshcat-pane"]
+        assert (right - left) * (bottom - top) > 0.3 * width * height
+        canvas = "const c = viewer.renderer.domElement; return [c.clientWidth, c.clientHeight]"
+        room = [right - left, bottom - top]
+        browser.until(lambda: np.allclose(browser.ask(canvas), room, atol=2))
+        browser.slide("#slider", 0)
+        assert browser.text("#where").startswith("screw segment 1 of")
 
 
 def test_screw_segments_have_their_colours_where_they_are(browser, opened, reader) -> None:
@@ -173,6 +287,11 @@ def test_the_live_page(browser, finished_run, reader) -> None:
         browser.until(lambda: browser.text("#headline").startswith("Demonstration 1 "))
         browser.until(lambda: (browser.node("attempts/01/segments/01") or {}).get("seen"))
         assert browser.node("attempts/02") is None
+        browser.select("#against", 1)
+        browser.until(lambda: (browser.node("copies/02/baxter/left_hand") or {}).get("seen"))
+        assert not browser.node("attempts/02")["seen"]
+        browser.select("#against", "")
+        browser.until(lambda: browser.node("copies/02") is None)
         here = browser.text("#where-it-is")
         browser.ask("arguments[0].scrollTop = 0", browser.driver.find_element("id", "panel"))
         browser.click("#map svg")
@@ -186,7 +305,11 @@ def test_the_report_stands_alone(browser, reader, tmp_path) -> None:
     pictures = "return [...document.images].map((i) => i.naturalWidth)"
     assert len(browser.ask(pictures)) == 3
     assert all(width > 500 for width in browser.ask(pictures))
-    assert browser.ask("return document.querySelectorAll('svg.chart').length") == 2
+    charts = "return [...document.querySelectorAll('svg.chart')].map((c) => c.ariaLabel)"
+    assert browser.ask(charts) == ["joint angles along the plan", "reach along the plan"] * 2
+    with browser.screen_of(390, 844):
+        assert browser.ask("return document.documentElement.scrollWidth") <= 390
+    assert browser.driver.find_elements("css selector", "p.bounds") == []
     links = browser.ask("return [...document.links].map((a) => a.getAttribute('href'))")
     assert all((tmp_path / link).is_file() for link in links)
     browser.click("#round-1 a")

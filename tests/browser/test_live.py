@@ -82,7 +82,9 @@ def test_a_run_is_told_as_it_happens(browser, run) -> None:
                 assert browser.node("instances/success") is not None
                 assert browser.node(f"{path}/next/bowl/ring")["seen"]
                 verdict = event.verdict
-                assert f"weakest region {verdict.region}" in browser.text("#details")
+                assert f"weakest region: {event.regions.name(verdict.region)}" in browser.text(
+                    "#details"
+                )
             if isinstance(event, Finished):
                 browser.until(lambda: browser.text("#headline") == "insufficient")
         rounds = browser.ask("return document.querySelectorAll('#rounds li').length")

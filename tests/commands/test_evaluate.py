@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
+
+from drake_screw import load_scenario
+from drake_screw.runs import instance_files, outcome_table
+from drake_screw.runs.outcome_table import tabulate_outcomes
+from drake_screw.steps import Step
+
+LAMP = "obstacles=[{name: lamp, sphere: {radius: 0.1}, xyz: [0.9, 0.3, 0.1]}]"
+TURNED = "objects.0.symmetry=null"
 
 
 def test_evaluate_writes_a_code_for_each_instance_and_demonstration(
@@ -87,10 +99,9 @@ def test_evaluate_agrees_with_the_outcomes_of_another_planner(
 
 
 def test_the_bodies_that_touch_have_a_column(command, library, places) -> None:
-    lamp = "obstacles=[{name: lamp, sphere: {radius: 0.1}, xyz: [0.9, 0.3, 0.1]}]"
     code, out, _ = command(
         "evaluate", "pouring", "--demonstrations", library, "--instances", places,
-        "--output", "out.csv", "--set", lamp, "--set", "objects.0.symmetry=null",
+        "--output", "out.csv", "--set", LAMP, "--set", TURNED,
     )  # fmt: skip
     assert code == 0
     rows = list(csv.DictReader(Path("out.csv").read_text().splitlines()))
@@ -104,3 +115,88 @@ def test_the_bodies_that_touch_have_a_column(command, library, places) -> None:
     assert collided > 0
     assert rows[1]["demo_02"].endswith(":c")
     assert re.search(r"\d of \d failures are collisions: (\w+-lamp \d+%(, )?)+$", out, re.MULTILINE)
+
+
+def test_a_table_is_the_same_however_it_is_divided_and_whatever_it_is_called(
+    library, tmp_path, monkeypatch
+) -> None:
+    """Blocks of seven and portions of three, against all at once; CSV against Parquet."""
+    scenario = load_scenario("pouring", [LAMP, TURNED])
+    x = np.round(np.linspace(0.75, 1.05, 40), 3)
+    y = np.round(np.tile([0.1, 0.3, 0.35, -0.2], 10), 3)
+    places = tmp_path / "places.csv"
+    rows = "".join(f"{a},{b},{i}\n" for i, (a, b) in enumerate(zip(x, y, strict=True)))
+    places.write_text(f"x,y,note\n{rows}")
+    pq.write_table(pa.table({"y": y, "x": x}), tmp_path / "places.parquet")
+    whole = tabulate_outcomes(scenario, library, places, tmp_path / "whole.csv")
+    assert whole.collisions is not None
+    assert whole.collisions.collisions > 0
+    monkeypatch.setattr(instance_files, "ROWS", 7)
+    monkeypatch.setattr(outcome_table, "PORTION", (3, 3))
+    told: list[Step] = []
+    divided = tabulate_outcomes(
+        scenario, library, tmp_path / "places.parquet", tmp_path / "out.csv", tell=told.append
+    )
+    columns = tabulate_outcomes(scenario, library, places, tmp_path / "out.parquet")
+    assert (tmp_path / "out.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+    for name in ("instances", "outside", "success_rates", "solved", "arms", "collisions"):
+        assert getattr(whole, name) == getattr(divided, name) == getattr(columns, name)
+    planned = [step for step in told if step.words == "planning instances"]
+    assert [step.done for step in planned[:4]] == [0, 3, 6, 7]
+    assert {step.total for step in planned} == {40}
+    text = list(csv.DictReader((tmp_path / "whole.csv").open()))
+    table = pq.read_table(tmp_path / "out.parquet")
+    assert table.column_names == list(text[0])
+    for name in table.column_names:
+        values = table[name].to_pylist()
+        words = [f"{v:.9g}" if isinstance(v, float) else v for v in values]
+        assert words == [row[name] for row in text]
+
+
+def test_a_wrong_row_deep_in_a_table_ends_it_before_anything_is_planned(
+    command, library, tmp_path
+) -> None:
+    rows = "0.8,0.1\n" * 40_000
+    (tmp_path / "places.csv").write_text(f"x,y\n{rows}0.8,O.1\n{rows}")
+    Path("out.csv").write_text("as it was")
+    code, out, err = command(
+        "evaluate", "pouring", "--demonstrations", library, "--instances", "places.csv",
+        "--output", "out.csv",
+    )  # fmt: skip
+    assert (code, out) == (2, "")
+    assert err == ("error: places.csv:40002: y is 'O.1', expected a number from -1000 to 1000\n")
+    assert Path("out.csv").read_text() == "as it was"
+    assert not list(tmp_path.glob(".*"))
+
+
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ("none/out.csv", "none/out.csv: cannot be written: there is no folder 'none'"),
+        ("out.parquet.gz", "out.parquet.gz: Parquet is compressed already"),
+    ],
+)
+def test_where_no_table_can_be_is_said_first(command, library, places, output, message) -> None:
+    code, out, err = command(
+        "evaluate", "pouring", "--demonstrations", library, "--instances", places,
+        "--output", output,
+    )  # fmt: skip
+    assert (code, out) == (2, "")
+    assert err.startswith(f"error: {message}")
+
+
+@pytest.mark.slow
+def test_what_was_executed_is_evaluated_again(command, certified, tmp_path) -> None:
+    """The table of executions says where objects were as `evaluate` wants it."""
+    run = shutil.copytree(certified, tmp_path / "run")
+    code, *_ = command("execute", run, "--instance", "bowl=0.9,0.3", "--workers", "1")
+    assert code == 0
+    (table,) = (run / "executions").glob("*/executions.csv")
+    code, *_ = command(
+        "evaluate", "pouring", "--demonstrations", run / "demonstrations",
+        "--instances", table, "--output", "out.csv", "--json", "out.json",
+        "--set", TURNED,
+    )  # fmt: skip
+    assert code == 0
+    assert Path("out.csv").read_text().splitlines()[1].startswith("0.9,0.3,")
+    assert json.loads(Path("out.json").read_text())["solved"] == 1.0

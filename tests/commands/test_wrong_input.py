@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 import shutil
 from pathlib import Path
@@ -9,6 +11,9 @@ from pathlib import Path
 import pytest
 
 from tests.commands.conftest import Command
+from tests.small_runs import finished_run
+
+__all__ = ["finished_run"]
 
 
 def spoil(library: Path, to: Path, change) -> Path:
@@ -94,6 +99,14 @@ EVALUATE = ["evaluate", "pouring", "--demonstrations", "nowhere"]
         (["study", "pouring", "--regions", "1,x"], "not a list of numbers of regions"),
         (["study", "pouring", "--regions", "999983"], "999,983 regions; a grid has 1 to 4,096"),
         (["study", "pouring", "--runs", "100000000000"], "years of one processor"),
+        (["study", "pouring", "--scheduler", "tcp:/x"], "'tcp:/x' is not the address"),
+        (["study", "pouring", "--scheduler", "tcp://localhost:1"], "nothing answers there"),
+        (
+            ["study", "pouring", "--scheduler", "tcp://localhost:1", "--workers", "2"],
+            "--workers are processes of this machine",
+        ),
+        (["execute", ".", "--scheduler", "tcp://localhost:1"], "nothing answers there"),
+        (["execute", ".", "--live", "--scheduler", "tcp://x:1"], "no use for --scheduler"),
         (["check", "a" * 5000], "no scenario 'aaa"),
         (["report", "a" * 5000], "File name too long"),
         (["study"], "no scenario"),
@@ -179,3 +192,47 @@ def test_an_output_that_is_taken_is_refused(command: Command, certified: Path) -
         assert (code, out) == (2, "")
         assert "exists already" in err
     assert list(Path().iterdir()) == []
+
+
+def test_a_folder_that_was_removed_around_one_is_told(command, tmp_path, monkeypatch) -> None:
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    code, out, err = command("check", "pouring")
+    assert (code, out) == (2, "")
+    assert err == (
+        "error: the folder that you are in does not exist any more\n"
+        "  Change to one that does: cd FOLDER\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "place"),
+    [
+        (("report", "run"), r"run/round_01: cannot be written: Read-only file system\n  Free some"),
+        (
+            ("execute", "run", "--instance", "0.9", "0.3"),
+            r"run/executions: cannot be written: Read-only file system\n  Executions are written",
+        ),
+    ],
+)
+def test_a_run_on_a_file_system_that_is_read_only_says_so(
+    command, finished_run, tmp_path, monkeypatch, words, place
+) -> None:
+    shutil.copytree(finished_run, tmp_path / "run")
+
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr(Path, "write_bytes", refuse)
+    monkeypatch.setattr(Path, "mkdir", refuse)
+    code, _, err = command(*words)
+    assert code == 2
+    assert re.search(rf"^error: {place}", err), err
+    assert err.count("error:") == 1
+
+
+def test_an_option_that_a_strategy_does_not_have_is_told_with_the_scenario(command) -> None:
+    code, _, err = command("check", "pouring", "--set", "coverage.options.x=1")
+    assert code == 2
+    assert re.match(r"error: \S+pouring\.yaml: no option 'x' in bandit 'eprocess'\n", err)

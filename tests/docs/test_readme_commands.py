@@ -27,12 +27,33 @@ LEAVES = (
 )
 
 
-def commands() -> list[str]:
-    """Lines of the shell blocks, joined where they are continued, without `make`."""
-    text = (ROOT / "README.md").read_text()
+def commands(page: str = "README.md") -> list[str]:
+    """Lines of a page's shell blocks, joined where they are continued, without `make`."""
+    text = (ROOT / page).read_text()
     blocks = re.findall(r"^```sh\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
     lines = "".join(blocks).replace("\\\n", " ").splitlines()
     return [line.split("  #")[0].strip() for line in lines if not line.startswith("make")]
+
+
+@pytest.mark.slow
+def test_getting_started_ends_with_an_own_recording_looked_at(tmp_path: Path) -> None:
+    if not COMMAND.exists():
+        pytest.skip(f"the command is not installed beside {sys.executable}")
+    for line in commands("docs/getting_started.md")[1:]:  # after the environment is activated
+        done = subprocess.run(
+            line.replace("drake-screw", str(COMMAND), 1),
+            shell=True,
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+        if line.startswith("cat"):
+            x, y = (float(row.split(",")[3]) for row in done.stdout.splitlines()[:2])
+            assert (x, y) == pytest.approx((1.08, 0.78), abs=0.005)  # what the page says next
+    assert "log" in (tmp_path / "mine.html").read_text()
+    assert (tmp_path / "covered" / "run.json").is_file()
 
 
 @pytest.mark.slow
@@ -58,14 +79,17 @@ def test_commands_in_their_order(tmp_path: Path) -> None:
         assert (tmp_path / "my_run" / entry).exists(), entry
 
 
-def test_every_command_can_be_read() -> None:
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md", "docs/getting_started.md"])
+def test_every_command_can_be_read(page: str) -> None:
     """Its verb, arguments and options; and shipped scenarios and robots by their names."""
     group = typer.main.get_command(app)
     assert isinstance(group, typer.core.TyperGroup)
     names = {entry.name for entry in shipped().scenarios}
     names |= {entry.name for entry in shipped().models}
-    for line in commands():
+    for line in commands(page):
         program, verb, *words = shlex.split(line)
+        if page != "README.md" and program in (".", "cp", "cat"):
+            continue
         assert program == "drake-screw"
         given = group.commands[verb].make_context(verb, words).params
         for name in (given.get("scenario"), given.get("robot")):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import ModelError
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
 from drake_screw.execution.timing import time_plan
 from drake_screw.planning import BatchPlanner, Plan
@@ -52,6 +55,15 @@ def test_it_is_executed(config: StationConfig, lesson: Demonstration, plan: Plan
     (done,) = execute_all(config, [Job(plan, X_WO)], workers=1)
     assert done.report.flawless, str(done.report.status)
     assert done.report.tracking.position < 5e-3
+
+
+def test_it_is_executed_with_no_other_model_than_it_was_planned_with(
+    config: StationConfig, workcell: Workcell, plan: Plan
+) -> None:
+    job = Job(plan, X_WO)
+    execute_all(replace(config, model=workcell.model.hash), [job], workers=1)
+    with pytest.raises(ModelError, match="not the one that plans were made with"):
+        execute_all(replace(config, model="0" * 64), [job], workers=1)
 
 
 @pytest.mark.parametrize("format", names("exporters"))

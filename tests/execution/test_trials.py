@@ -72,7 +72,7 @@ def test_the_table_has_a_row_for_each_trial(trials) -> None:
     rows = list(csv.DictReader(io.StringIO(trials_csv(trials, AREA))))
     assert [row["status"] for row in rows] == ["done", "failed", "no plan"]
     assert [row["region"] for row in rows] == ["3", "4", "5"]
-    assert rows[0]["bowl_x"] == "0.9"
+    assert rows[0]["x"] == "0.9"
     assert rows[0]["outside_limits"] == ""
     assert len(rows[0]["screw_mm"].split(";")) == 2
     assert 0.0 < float(rows[0]["tracking_mm"]) < 5.0

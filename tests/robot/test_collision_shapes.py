@@ -55,6 +55,7 @@ def urdf_with(folder: Path, shape: str) -> Path:
         ("<box><size>0.1\n-0.1 0.1</size></box>", "a box with size 0.1 -0.1 0.1"),
         ("<box/>", "a box without size"),
         ("<sphere><radius>0</radius></sphere>", "a sphere with radius 0"),
+        ("<sphere><radius>1e9</radius></sphere>", "a sphere with radius 1e9, over 1,000 m"),
         ("<capsule><radius>0.1</radius></capsule>", "a capsule without length"),
         ("<cylinder><radius>0.1</radius><length>0</length></cylinder>", "cylinder with length 0"),
         ("<ellipsoid><radii>0.1 nan 1</radii></ellipsoid>", "an ellipsoid with radii 0.1 nan 1"),

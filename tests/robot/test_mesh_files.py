@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +13,14 @@ from pydrake.geometry import Convex
 
 from drake_screw.errors import ModelError
 from drake_screw.files import file_hash
-from drake_screw.robot import MeshShape, PlacedShape, RobotConfig, Workcell, build_workcell
+from drake_screw.robot import (
+    MeshShape,
+    PlacedShape,
+    RobotConfig,
+    Workcell,
+    build_workcell,
+    kept_files,
+)
 from drake_screw.robot.mesh_files import MOST_FACES, hull_file, look_file
 from drake_screw.robot.model_file import ModelFile, model_file
 from drake_screw.robot.model_meshes import LARGE
@@ -100,6 +109,45 @@ def test_a_mesh_is_converted_to_its_hull(name: str, text: str, tmp_path: Path) -
     assert hull_file(tmp_path / name) != converted
 
 
+DAMAGE: dict[str, Callable[[Path], object]] = {
+    "cut off": lambda file: file.write_bytes(file.read_bytes()[:-70]),
+    "changed": lambda file: file.write_bytes(file.read_bytes().replace(b"0.", b"7.", 1)),
+    "empty": lambda file: file.write_bytes(b""),
+    "of zeros": lambda file: file.write_bytes(bytes(file.stat().st_size)),
+    "a folder": lambda file: (file.unlink(), file.mkdir(), (file / "x").touch()),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=list(DAMAGE))
+def test_a_damaged_file_in_the_cache_is_noticed_told_and_made_again(
+    damage: Callable[[Path], object], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    pytest.importorskip("collada")
+    (tmp_path / "small.dae").write_text(DAE)
+    hull, look = hull_file(tmp_path / "small.dae"), look_file(tmp_path / "small.dae")
+    model = read(arm(tmp_path, "small.dae", look="small.dae")).read
+    for file in (hull, look, look.with_suffix(".mtl"), model):
+        right = file.read_bytes()
+        damage(file)
+        caplog.clear()
+        assert hull_file(tmp_path / "small.dae") == hull
+        assert look_file(tmp_path / "small.dae") == look
+        assert read(arm(tmp_path, "small.dae", look="small.dae")).read == model
+        assert file.read_bytes() == right
+        assert caplog.messages == [f"{file}: it is damaged, and made again"]
+        kept_files._tell.cache_clear()
+
+
+def test_a_file_where_the_cache_has_a_folder_makes_way(tmp_path: Path) -> None:
+    pytest.importorskip("trimesh")
+    (tmp_path / "small.stl").write_text(stl())
+    hull = hull_file(tmp_path / "small.stl")
+    shutil.rmtree(hull.parent)
+    hull.parent.write_bytes(b"")
+    assert hull_file(tmp_path / "small.stl") == hull
+    assert hull.is_file()
+
+
 def test_collada_counts_in_its_unit_with_its_axes_as_they_are(tmp_path: Path) -> None:
     """As ROS, Gazebo and Pinocchio do, whatever up axis it states."""
     pytest.importorskip("trimesh")
@@ -156,6 +204,12 @@ def test_obstacles_and_tools_may_be_such_meshes(tmp_path: Path) -> None:
     (tmp_path / "small.stl").write_text(stl(CORNERS * [1.0, 1.0, 0.0]))
     with pytest.raises(ModelError, match="this mesh is flat"):
         shape.corners()
+    (tmp_path / "small.stl").write_text(stl())
+    with pytest.raises(
+        ModelError, match="10000 times as large as in the file, goes as far as 3e"
+    ) as e:
+        PlacedShape(MeshShape(tmp_path / "small.stl", 1e4)).corners()
+    assert "0.001 if they are in mm" in str(e.value)
 
 
 def test_a_large_obj_file_is_coarsened_to_be_looked_at(tmp_path: Path) -> None:

@@ -44,7 +44,7 @@ def test_the_record_is_of_the_rounds_own_regions(whole) -> None:
         assert len(table) == event.regions.K == len(entry["verdict"]["samples"])
         assert sum(entry["samples"]) == len(event.evaluation.region)
         for row, lower in zip(table, event.regions.bounds(np.arange(len(table)))[0], strict=True):
-            assert float(row["bowl_y_min"]) == pytest.approx(lower[0, 1], abs=1e-5)
+            assert float(row["y_min"]) == pytest.approx(lower[0, 1], abs=1e-5)
         if event.suggestion is not None:
             name = event.regions.name(event.verdict.region)
             assert entry["next_demonstration"]["region_name"] == name
@@ -97,7 +97,7 @@ def test_a_scenario_with_two_objects_runs(tmp_path) -> None:
         np.testing.assert_array_equal(event.regions.index(places), event.evaluation.region)
     folder = tmp_path / "two" / "round_01"
     header = (folder / "regions.csv").read_text().split("\n")[0]
-    assert "cup_yaw_min" in header
+    assert "cup.yaw_min" in header
     assert (folder / "heat_map.png").stat().st_size > 0
     assert (tmp_path / "two" / "meshcat.html").stat().st_size > 0
 

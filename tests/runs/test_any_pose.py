@@ -16,8 +16,9 @@ from drake_screw.acquisition import (
     Suggestion,
 )
 from drake_screw.errors import ScenarioError
-from drake_screw.runs.instance_tables import outcomes_csv, read_instances
+from drake_screw.runs.instance_tables import read_instances
 from drake_screw.runs.narration import describe
+from drake_screw.runs.outcome_columns import outcome_columns
 from drake_screw.runs.pictures import plane_of
 from drake_screw.runs.records import SuggestionRecord
 from drake_screw.runs.run import Run, new_run, open_run
@@ -59,18 +60,17 @@ def test_its_instances_and_suggestions_are_read_again(shelf: Run) -> None:
 
 def test_its_tables_have_a_column_for_what_varies(shelf: Run, tmp_path: Path) -> None:
     table = list(csv.reader((shelf.directory.path / "round_01" / "regions.csv").open()))
-    ends = [
-        f"bowl_{axis}_{end}" for axis in ("x", "y", "yaw", "z", "pitch") for end in ("min", "max")
-    ]
+    ends = [f"{axis}_{end}" for axis in ("x", "y", "yaw", "z", "pitch") for end in ("min", "max")]
     assert table[0] == ["region", *ends, "samples", "failures", "failure_rate", "lower", "upper"]
     file, area = tmp_path / "places.csv", shelf.setup.area
     file.write_text("x,y,z,pitch\n0.9,0.3,0.05,0.02\n")
     places = read_instances(file, area)
-    assert places.tolist() == [[[0.9, 0.3, 0.0, 0.05, 0.0, 0.02]]]
-    outcomes = shelf.setup.evaluate(shelf.demonstrations, places)
-    assert outcomes_csv(places, outcomes, ["a"], area).startswith(
-        "x,y,z,pitch,a\n0.9,0.3,0.05,0.02,"
-    )
+    (coordinates,) = places.blocks()
+    assert coordinates.tolist() == [[[0.9, 0.3, 0.0, 0.05, 0.0, 0.02]]]
+    outcomes = shelf.setup.evaluate(shelf.demonstrations, coordinates)
+    told = shelf.setup, shelf.demonstrations, coordinates, places.columns, outcomes
+    names = [column.name for column in outcome_columns(*told)]
+    assert names[:5] == ["x", "y", "z", "pitch", shelf.demonstrations[0].name]
     file.write_text("x,y,z\n0.9,0.3,0.05\n")
     with pytest.raises(ScenarioError, match="no column 'pitch', and it varies"):
         read_instances(file, area)

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drake_screw import processes
 from drake_screw.acquisition import InstancesExecuted, RoundFinished, Suggestion
 from drake_screw.assembly import executing
 from drake_screw.assembly.placing import placed
@@ -23,6 +22,7 @@ from drake_screw.runs.run import new_run, open_run
 from drake_screw.runs.summary import summarize_run
 from drake_screw.scenario.loader import load_scenario
 from drake_screw.screws import rotation_angle
+from drake_screw.sharing import crew
 from drake_screw.studies.study import new_study
 from drake_screw.visualization.attempt import headline
 from drake_screw.visualization.rounds import sample
@@ -73,7 +73,7 @@ def stand(monkeypatch) -> Stand:
     stand = Stand()
     monkeypatch.setattr(executing, "judge", stand)
     monkeypatch.setattr(Bench, "of", classmethod(lambda cls, config: cls(config, None)))
-    monkeypatch.setattr(processes, "processors", lambda: 1)
+    monkeypatch.setattr(crew, "processors", lambda: 1)
     return stand
 
 

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -51,6 +52,31 @@ def test_regions_are_stored_as_integers_that_hold_them(tmp_path: Path, K: int, d
 def test_a_round_without_instances_can_be_stored(tmp_path: Path) -> None:
     save_evaluation(tmp_path / "instances.npz", evaluation(np.empty(0, dtype=np.int64)))
     assert len(load_evaluation(tmp_path / "instances.npz").region) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "message"),
+    [
+        ("segment", lambda a: a.astype(str), "segment is of type <U.* and shape"),
+        ("cause", lambda a: a[:, 0], "segment is of type int16 and shape"),
+        ("pair", lambda a: a[:1], "pair is of type int16 and shape"),
+        ("fraction", lambda a: a.astype(int), "fraction is of type int64 and shape"),
+        ("cause", lambda a: a + 99, "cause holds numbers that stand for none"),
+        ("region", lambda a: a.astype(int) - 5, "region holds numbers below 0"),
+        ("x_y_yaw", lambda a: a + np.nan, "x_y_yaw holds numbers that are not finite"),
+        ("x_y_yaw", lambda a: a[..., 0], "x_y_yaw is of type float64 and shape"),
+    ],
+)
+def test_instances_of_another_kind_or_shape_are_damaged(
+    tmp_path: Path, name: str, change: Callable[[np.ndarray], np.ndarray], message: str
+) -> None:
+    file = tmp_path / "instances.npz"
+    save_evaluation(file, evaluation(np.arange(4)))
+    with np.load(file) as data:
+        arrays = dict(data)
+    np.savez(file, **arrays | {name: change(arrays[name])})
+    with pytest.raises(ValueError, match=message):
+        load_evaluation(file)
 
 
 def test_run_json_is_written_as_it_was_read(finished_run: Path) -> None:
@@ -102,7 +128,7 @@ def test_the_table_of_regions_is_csv() -> None:
     regions = grid_regions(AREA, {"x": 2})
     rows = list(csv.DictReader(io.StringIO(regions_csv(verdict_of(2, samples=0), regions))))
     assert [row["region"] for row in rows] == ["0", "1"]
-    assert [row["bowl, blue_x_min"] for row in rows] == ["0.5", "0.75"]
+    assert [row["x_min"] for row in rows] == ["0.5", "0.75"]
     assert rows[1]["lower"] == "0.333333"
     assert rows[0]["failure_rate"] == "nan"
     assert None not in rows[0]

@@ -75,7 +75,7 @@ def test_objects_can_be_pushed_and_are_not(run, tmp_path) -> None:
         instance=PLACE,
         workers=1,
         free_objects=True,
-        progress=lambda *counts: told.append(counts),
+        tell=lambda step: told.append((step.done, step.total)),
     )
     assert told == [(0, 1), (1, 1)]
     text, summary = str(done), done.summary

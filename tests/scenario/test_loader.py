@@ -637,7 +637,8 @@ def test_loading_imports_no_drake() -> None:
 
 
 numbers = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e300, max_value=1e300)
-positive = st.floats(min_value=5e-324, max_value=1e300)
+lengths = st.floats(min_value=-1000.0, max_value=1000.0)
+positive = st.floats(min_value=5e-324, max_value=1000.0)
 texts = st.text(
     st.characters(codec="utf-8", exclude_categories=["Cs", "Cn"]), min_size=1, max_size=12
 ) | st.sampled_from(["1e5", "0.5", "no", "null", "~", "1:30", "a: b", "- x", "#", "0x1", ".inf"])
@@ -646,7 +647,7 @@ angles = st.floats(min_value=-3.14, max_value=3.14)
 
 
 @st.composite
-def intervals(draw: st.DrawFn, ends: st.SearchStrategy[float] = numbers) -> Interval:
+def intervals(draw: st.DrawFn, ends: st.SearchStrategy[float] = lengths) -> Interval:
     lower, upper = sorted([draw(ends), draw(ends)])
     return Interval(lower, upper)
 
@@ -660,7 +661,7 @@ def scenarios(draw: st.DrawFn) -> Scenario:
             x=draw(intervals()),
             y=draw(intervals()),
             yaw=draw(intervals(angles)),
-            z=draw(numbers),
+            z=draw(lengths),
             radius=draw(positive),
             height=draw(positive),
         )
@@ -680,16 +681,16 @@ def scenarios(draw: st.DrawFn) -> Scenario:
             model="baxter",
             joints=tuple(joints),
             end_effector=draw(texts),
-            start=tuple(draw(numbers) for _ in joints),
+            start=tuple(draw(lengths) for _ in joints),
             parked=draw(st.dictionaries(texts.filter(lambda t: t not in joints), numbers)),
         ),
         table=draw(
             st.none()
             | st.builds(
                 TableBlock,
-                center=st.tuples(numbers, numbers),
+                center=st.tuples(lengths, lengths),
                 size=st.tuples(positive, positive),
-                top=numbers,
+                top=lengths,
                 thickness=positive,
             )
         ),
@@ -751,7 +752,8 @@ def test_what_is_written_is_read_back(
 def test_each_method_of_segmentation_has_its_own_keys_and_defaults() -> None:
     published = load_scenario("pouring", ["segmentation.method=published"]).segmentation
     assert (published.method, published.config) == ("published", SegmentationConfig())
-    assert load_scenario("pouring").segmentation.config == FaithfulConfig()
+    for nothing in ("segmentation.method=null", "segmentation.method=faithful"):
+        assert load_scenario("pouring", [nothing]).segmentation.config == FaithfulConfig()
     faithful = load_scenario("pouring", ["segmentation.reach=0.5"]).segmentation
     assert (faithful.method, faithful.config) == ("faithful", FaithfulConfig(reach=0.5))
     assert faithful.min_progress is None
@@ -814,3 +816,40 @@ def test_a_scenario_stored_before_there_were_obstacles_has_none(
     scenario = load_stored_scenario(write())
     assert scenario.obstacles == ()
     assert scenario.robot.tool is None
+
+
+def test_aliases_that_stand_for_more_than_anybody_means_are_refused(
+    write: Callable[..., Path],
+) -> None:
+    doubled = "".join(f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]\n" for i in range(1, 60))
+    error = error_of(write(("teacher:", f"a0: &a0 [x]\n{doubled}teacher:")))
+    assert error.message == "not usable: aliases make more than 100,000 values of it"
+    assert error.remedy == "Write out what is meant, without & and *."
+
+
+def test_of_very_many_problems_the_first_are_listed(write: Callable[..., Path]) -> None:
+    error = error_of(write(("teacher:", f"obstacles: [{', '.join('1' * 600)}]\nteacher:")))
+    first, *lines = error.message.splitlines()
+    assert first == "600 problems, of which these are the first 12"
+    assert sum(line.startswith("  line 22: obstacles.") for line in lines) == 12
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("y: [-0.2, 0.8]", "y: [-1e308, 0.8]", "objects.0.y: -1e+308 m is beyond 1,000 m"),
+        ("radius: 0.08", "radius: 80000", "objects.0.radius: 80000 m is beyond 1,000 m"),
+        (
+            "y: [-0.2, 0.8]",
+            "y: 0\n    yaw: -1e308",
+            "objects.0.yaw: -1e+308 rad is beyond 1,000 rad",
+        ),
+    ],
+)
+def test_lengths_beyond_any_workcell_are_refused(
+    write: Callable[..., Path], old: str, new: str, message: str
+) -> None:
+    """Drake's queries end the process where a shape is huge."""
+    error = error_of(write((old, new)))
+    assert error.message.startswith(message)
+    assert error.remedy in ("Numbers here are in m.", "Numbers here are in rad.")

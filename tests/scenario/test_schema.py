@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from drake_screw.bandits import STRATEGIES
 from drake_screw.scenario.block import Block, Problem
+from drake_screw.scenario.meanings import meanings
 from drake_screw.scenario.object_blocks import ObjectBlock
 from drake_screw.scenario.problems import problems_of
 from drake_screw.scenario.robot_blocks import RecordedOnBlock, RobotBlock
@@ -60,7 +61,7 @@ def test_every_key_is_described_and_every_block_frozen() -> None:
     assert len(set(found)) == 20
     for block in found:
         for name, field in block.model_fields.items():
-            assert field.description, f"{block.__name__}.{name}"
+            assert meanings(block).get(name), f"{block.__name__}.{name}"
             extra = field.json_schema_extra
             units = ("m", "rad", "rad/s", "kg", "N")
             assert extra is None or extra in [{"unit": unit} for unit in units]
@@ -192,7 +193,12 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         (tool(shape=BOX, touches=("a", "a")), "robot.tool.touches.1", "listed twice", ""),
         (with_object(name="b.x"), "objects.0.name", "letters, digits, - and _", ""),
         (with_object(x=(1.0, 0.5)), "objects.0.x", "lower limit 1.0 lies above", "single"),
-        (with_object(x=(-1.7e308, 1.7e308)), "objects.0.x", "too wide", ""),
+        (
+            with_object(x=(-1.7e308, 1.7e308)),
+            "objects.0.x",
+            "-1.7e+308 m is beyond 1,000 m",
+            "in m",
+        ),
         (with_object(yaw=(-180, 180)), "objects.0.yaw", "wider than a full turn", "rad"),
         (with_object(radius=0.0), "objects.0.radius", "above 0, found 0.0", "radius"),
         (with_object(height=-1.0), "objects.0.height", "above 0, found -1.0", "height"),

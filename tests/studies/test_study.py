@@ -217,12 +217,19 @@ def test_bad_requests_write_nothing(scenario, tmp_path) -> None:
             new_study(scenario, (1,), 1, output)
 
 
+STUDY_OF = '{{"format": 1, "hashes": {{"model": "x"}}, "regions": {}, "runs": {}}}'
+
+
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
         (STUDY, None, "not a study directory"),
         (STUDY, "{", "damaged"),
         (STUDY, "{}", "damaged"),
+        (STUDY, "[" * 100_000, "damaged"),
+        (STUDY, STUDY_OF.format("[[1]]", 2), "damaged: regions and runs are not whole numbers"),
+        (STUDY, STUDY_OF.format("[1]", "true"), "damaged: regions and runs are not whole numbers"),
+        (RUNS, f"{'x' * 140_000},b\n", "damaged: field larger than"),
         (RUNS, "a,b\n", "unknown columns"),
         (RUNS, "", "damaged"),
     ],
@@ -267,7 +274,7 @@ def test_a_finished_study_or_one_from_before_ompl_was_noted_is_opened_anyway(
         monkeypatch.setattr(connection, "available", lambda: False)
         record = finished.record | {"led_around": before, "runs": runs}
         study = Study(finished.path, free, record)
-        monkeypatch.setattr(Study, "_results", lambda *_: iter(()))
+        monkeypatch.setattr("drake_screw.studies.study.shared_runs", lambda *_: iter(()))
         monkeypatch.setattr(Study, "_conclude", lambda _: None)
         monkeypatch.setattr(Study, "_save", lambda *_: None)
         assert list(study.carry_out(1)) == []

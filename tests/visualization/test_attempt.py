@@ -39,9 +39,10 @@ from drake_screw.visualization.attempt import (
 )
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.linkage import Linkage
+from drake_screw.web.area_map import work_area_map
 from drake_screw.web.arm_sketch import arm_sketch
 from drake_screw.web.attempt_tables import attempt_record, attempts_csv, attempts_json
-from drake_screw.web.charts import joint_chart, joint_strip, work_area_map
+from drake_screw.web.charts import joint_chart, joint_curves, strip
 from drake_screw.web.inspector_panel import attempt_entry, drawn_state
 from tests.visualization.conftest import BOWL
 from tests.visualization.test_scene import BAXTER, TABLE
@@ -166,8 +167,9 @@ def test_charts_are_drawings(limited, workcell, make_round, regions) -> None:
     chart = ElementTree.fromstring(joint_chart(limited))
     lines = [e for e in chart.iter() if e.tag == "polyline"]
     assert len(lines) == limited.arm.n
-    strip = ElementTree.fromstring(joint_strip(limited, limited.failed_joint, samples))
-    (line,) = [e for e in strip.iter() if e.tag == "polyline"]
+    curve = joint_curves(limited)[limited.failed_joint]
+    drawn = ElementTree.fromstring(strip(limited, curve, samples))
+    (line,) = [e for e in drawn.iter() if e.tag == "polyline"]
     y = [float(p.split(",")[1]) for p in line.get("points").split()]
     assert min(abs(y[-1] - 2.0), abs(y[-1] - 22.0)) < 0.01
     event = make_round(regions, [0, 3, 10, 5, 0, 1])

@@ -16,7 +16,7 @@ from drake_screw.visualization.attempt import headline
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.look_figures import joint_figure
 from drake_screw.web.attempt_tables import attempts_json
-from drake_screw.web.charts import joint_chart, joint_strip
+from drake_screw.web.charts import joint_chart, joint_curves, strip
 from drake_screw.web.inspector_panel import drawn_state
 from tests.demonstrations.test_look import looked
 from tests.robot.small_arms import PLANAR, sdf
@@ -46,7 +46,10 @@ def test_an_attempt(tmp_path: Path, meshcat, endless: tuple[str, ...]) -> None:
     made = tried(workcell, *guides)
     assert made.plan.success
     samples = made.samples(50)
-    for drawn in (joint_chart(made), *(joint_strip(made, j, samples) for j in range(3))):
+    for drawn in (
+        joint_chart(made),
+        *(strip(made, curve, samples) for curve in joint_curves(made)),
+    ):
         assert "nan" not in drawn
         assert "inf" not in drawn
     text = attempts_json([made], {}, AREA)

@@ -14,6 +14,7 @@ from drake_screw.planning import Cause
 from drake_screw.tasks import ObjectArea, WorkArea, box_regions, grid_regions
 from drake_screw.visualization import draw_heat_map, heat_map_figure, save_heat_map
 from drake_screw.visualization.cells import cells
+from drake_screw.visualization.heat_map import legend_handles
 from drake_screw.visualization.palette import UNKNOWN, failure_color
 from tests.visualization.conftest import BOWL
 
@@ -115,6 +116,13 @@ def test_the_weakest_region_is_framed(ax, make_round, regions) -> None:
     (frame,) = [p for p in ax.patches if p.get_gid() == "weakest"]
     np.testing.assert_allclose(frame.get_xy(), (0.1, 0.6))
     np.testing.assert_allclose((frame.get_width(), frame.get_height()), (0.4, 0.2))
+
+
+def test_nothing_is_framed_where_nothing_fails(ax, make_round, regions) -> None:
+    event = make_round(regions, [0] * 6)
+    shown = draw_heat_map(ax, event, regions)
+    assert not [p for p in ax.patches if p.get_gid() in ("weakest", "halo")]
+    assert "weakest region" not in [h.get_label() for h in legend_handles(event, shown)]
 
 
 def test_demonstrations_are_numbered_where_their_object_stood(ax, make_round, regions) -> None:

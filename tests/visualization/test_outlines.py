@@ -16,7 +16,7 @@ from drake_screw.robot import BoxShape, CylinderShape, ObstacleConfig, PlacedSha
 from drake_screw.visualization import draw_heat_map, heat_map_figure
 from drake_screw.visualization.outlines import Outline, convex_outline, outlines, widened
 from drake_screw.visualization.progress import run_figure
-from drake_screw.web.charts import work_area_map
+from drake_screw.web.area_map import work_area_map
 
 TURNED = PlacedShape(BoxShape((0.2, 0.1, 0.5)), (0.8, 0.3, 0.1), (0.0, 0.0, np.pi / 2))
 WALL = ObstacleConfig("wall", TURNED)
@@ -102,6 +102,6 @@ def test_small_maps_show_them(make_round, regions) -> None:
     event = make_round(regions, FAILURES)
     drawn = ElementTree.fromstring(work_area_map(event, regions, things=outlines([WALL])))
     (wall,) = [e for e in drawn.iter() if e.get("class") == "obstacle"]
-    mm = np.array([p.split(",") for p in wall.get("points").split()], dtype=float)
-    # to the right from y = 0.9, downwards from x = 1.0
-    np.testing.assert_allclose([mm.min(axis=0), mm.max(axis=0)], [[500, 150], [700, 250]])
+    corners = np.array([p.split(",") for p in wall.get("points").split()], dtype=float)
+    # 300 units a metre: to the right from y = -0.3, downwards from x = 0.6
+    np.testing.assert_allclose([corners.min(axis=0), corners.max(axis=0)], [[150, 45], [210, 75]])

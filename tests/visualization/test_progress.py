@@ -26,7 +26,13 @@ def test_the_line_is_the_largest_estimate_of_each_round(events) -> None:
     np.testing.assert_allclose(line(ax, "mean")[:, 1], [20 / 60, 6 / 60, 3 / 60, 0.0])
     np.testing.assert_allclose(line(ax, "goal")[:, 1], 0.1)
     np.testing.assert_allclose(line(ax, "certified"), [[4, 0.0]])
-    assert "certified" in [t.get_text() for t in ax.texts]
+    named = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert set(named) == {
+        "weakest region",
+        "all regions together",
+        "asked for: at most 0.1",
+        "certified",
+    }
 
 
 def test_rounds_are_counted_in_whole_numbers_be_it_a_single_one(events) -> None:
@@ -68,3 +74,32 @@ def test_one_round_is_enough(tmp_path, events, regions) -> None:
     assert [file.suffix for file in files] == [".png", ".svg"]
     for one, other in zip(files, again, strict=True):
         assert one.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.parametrize("count", range(1, 9))
+def test_maps_have_labels_and_leave_no_hole(make_round, regions, count) -> None:
+    rounds = [make_round(regions, [3] * 6, number=i) for i in range(count)]
+    figure = run_figure(rounds, [regions] * count, beta=0.95)
+    maps, others = figure.axes[:count], figure.axes[count:]
+    assert {ax.get_xlabel() for ax in maps} == {"y in m"}
+    assert {ax.get_ylabel() for ax in maps} == {"x in m"}
+    taken = {
+        (row, column)
+        for ax in [*maps, others[1]]
+        for row in ax.get_subplotspec().rowspan
+        for column in ax.get_subplotspec().colspan
+    }
+    rows, columns = maps[0].get_gridspec().get_geometry()
+    bar = others[0].get_subplotspec()
+    held = {(row, column) for row in bar.rowspan for column in bar.colspan}
+    every = {(row, column) for row in range(rows) for column in range(columns)}
+    assert every - taken - held <= {(rows - 1, columns - 1)}, "but for what is below the scale"
+
+
+def test_no_text_is_in_the_way_of_lines(events) -> None:
+    ax = Figure().add_subplot()
+    draw_progress(ax, events, beta=0.9)
+    assert not ax.texts
+    ax.get_figure().draw_without_rendering()
+    legend = ax.get_legend().get_window_extent()
+    assert legend.y0 >= ax.get_window_extent().y1 - 1.0

@@ -7,7 +7,7 @@ from drake_screw.bandits import Cell
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.tasks import BoxRegions, ObjectArea, WorkArea, box_regions, grid_regions
 from drake_screw.visualization.cells import cells
-from drake_screw.visualization.rounds import details, headline, sample
+from drake_screw.visualization.rounds import bounds_over, details, headline, sample, weakest
 from tests.visualization.conftest import BOWL
 
 
@@ -125,3 +125,22 @@ def test_a_round_in_words(make_round, regions) -> None:
     assert details(weak, regions).startswith("weakest region: x 0.60..0.80, y 0.10..0.50; largest")
     sure = make_round(regions, [0] * 6)
     assert headline(sure) == "round 1, 2 demonstrations: certified"
+
+
+def test_where_nothing_fails_no_region_is_the_weakest(make_round, regions) -> None:
+    assert weakest(make_round(regions, [0, 0, 7, 0, 0, 0])) == 2
+    sure = make_round(regions, [0] * 6)
+    assert weakest(sure) is None
+    assert details(sure, regions).startswith("no instance fails; ")
+
+
+def test_bounds_over_one_minus_beta_are_explained_in_certified_rounds_only(
+    make_round, regions
+) -> None:
+    sure = make_round(regions, [0] * 6).verdict
+    assert sure.upper.max() == pytest.approx(0.1)
+    assert bounds_over(sure, 0.95).startswith(
+        "The upper bound of 6 of 6 regions is over 1 - beta = 0.05 although the round is certified"
+    )
+    assert bounds_over(sure, 0.9) == ""
+    assert bounds_over(make_round(regions, [1, 0, 0, 0, 0, 0]).verdict, 0.95) == ""

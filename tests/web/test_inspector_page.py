@@ -23,6 +23,7 @@ from drake_screw.planning import Cause
 from drake_screw.runs.run import open_run
 from drake_screw.visualization.lifetime import page_meshcat
 from drake_screw.web.inspector_page import save_page
+from drake_screw.web.inspector_panel import changed, tried_before
 from drake_screw.web.inspector_scene import InspectorScene
 from drake_screw.web.selection import after_message, select, steps
 from tests.small_runs import finished_run
@@ -90,10 +91,37 @@ def test_a_point_on_the_map_leads_to_the_nearest_failing_instance(reader) -> Non
     assert np.allclose(event.evaluation.coordinates[moved.instance, 0, :2], wanted[:2])
 
 
+def test_any_other_demonstration_may_be_beside(reader) -> None:
+    first = select(reader, 1)
+    other = 1 - first.demonstration
+    beside = after_message(reader, first, {"against": other})
+    assert beside.drawn == {0, 1}
+    assert after_message(reader, first, {"against": first.demonstration}) == first
+    swapped = after_message(reader, beside, {"demonstration": other})
+    assert (swapped.demonstration, swapped.against) == (other, first.demonstration)
+    assert after_message(reader, beside, {"against": None}) == first
+    moved = after_message(reader, beside, {"step": "next"})
+    assert moved.demonstration != moved.against
+
+
+def test_the_round_before_is_told(reader) -> None:
+    before, event = reader.event(0), reader.event(1)
+    worst = [np.nanmax(each.verdict.estimates) for each in (before, event)]
+    assert changed(before, event).endswith(f"worst region {worst[0]:.1%} → {worst[1]:.1%}")
+    outcomes = event.evaluation.outcomes
+    first, both = outcomes.success[:, 0], outcomes.success.any(axis=1)
+    row = int(np.flatnonzero(~first & both)[0])
+    assert tried_before(outcomes[row], before).startswith("; this instance fails")
+    row = int(np.flatnonzero(first)[0])
+    assert tried_before(outcomes[row], before).startswith("; this instance succeeds")
+
+
 @pytest.mark.parametrize(
     "message",
     [
         {},
+        {"against": 9},
+        {"against": "1"},
         {"round": 7},
         {"round": "1"},
         {"step": "sideways"},

@@ -70,20 +70,20 @@ def follow_key_poses(
     """
     count = len(X_WK)
     q = np.tile(np.asarray(q_start, dtype=float), (count, 1))
-    X_WE = chain.pose(q)
+    X_WE, J = chain.pose_and_jacobian(q)
     points, segments, arrived = [q], [0], np.ones(count, dtype=bool)
     for segment in range(X_WK.shape[1]):
         led = segment == 0 or free_axis is None
         X_WA, X_WB = X_WE if led else X_WK[:, segment - 1], X_WK[:, segment]
         size = rotation_angle(X_WA, X_WB) + translation_distance(X_WA, X_WB) / METERS_PER_RADIAN
         steps = max(4, int(np.ceil(size.max() / STEP)))
-        for i in range(1, steps + 1):
-            target = sclerp(X_WA, X_WB, np.full(count, i / steps))
-            motion = _motion(*_asked(chain.jacobian(q), target, X_WE, free_axis), q, stops)
+        targets = sclerp(X_WA, X_WB, np.arange(1, steps + 1)[:, None] / steps)
+        for target in targets:
+            motion = _motion(*_asked(J, target, X_WE, free_axis), q, stops)
             near_singular = np.linalg.norm(motion, axis=-1) > MAX_JOINT_STEP
             arrived &= ~near_singular
             q = q + np.where(near_singular[:, None], 0.0, motion)
-            X_WE = chain.pose(q)
+            X_WE, J = chain.pose_and_jacobian(q)
             points.append(q)
             segments.append(segment)
             if not arrived.any():

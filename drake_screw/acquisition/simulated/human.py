@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from pydrake.trajectories import PiecewisePolynomial
 
+from drake_screw.acquisition.simulated.band_pass import filtered, second_order_sections
 from drake_screw.acquisition.simulated.candidate_paths import damped_joint_motion
 from drake_screw.robot import ScrewChain
 from drake_screw.screws import rotation_angle, shift, translation_distance
@@ -68,8 +70,6 @@ def timed(
     Returns:
         q: (k, n), k / 100 s long.
     """
-    from scipy.interpolate import PchipInterpolator  # takes long to import
-
     ends = [0, *(int(np.flatnonzero(segment == i)[-1]) for i in range(len(pauses)))]
     stops = [rng.uniform(*pause) for pause in pauses]
     if rng.random() < 0.4:
@@ -90,8 +90,8 @@ def timed(
         part = minimum_jerk(np.arange(1, count + 1) / count)
         places.append(ends[i] + (ends[i + 1] - ends[i]) * part)
         places.append(np.full(round(RATE * tempo * stop), float(ends[i + 1])))
-    path = PchipInterpolator(np.arange(len(q)), q, axis=0)
-    return np.asarray(path(np.concatenate(places)))
+    path = PiecewisePolynomial.CubicShapePreserving(np.arange(float(len(q))), q.T)
+    return np.array(path.vector_values(np.concatenate(places)).T)
 
 
 def with_hand_noise(chain: ScrewChain, q: Array, rng: np.random.Generator) -> Array:
@@ -105,17 +105,12 @@ def with_hand_noise(chain: ScrewChain, q: Array, rng: np.random.Generator) -> Ar
     Returns:
         (m, n).
     """
-    from scipy.signal import butter, sosfiltfilt  # takes long to import
-
     V_WE = np.zeros((len(q), 6))
     for part in (DRIFT, TREMOR):
-        noise = sosfiltfilt(
-            butter(2, part.band, "bandpass", fs=RATE, output="sos"),
-            rng.standard_normal((len(q), 6)),
-            axis=0,
-        )
+        sections = second_order_sections(part.band, RATE)
+        noise = filtered(sections, rng.standard_normal((len(q), 6)))
         noise /= noise.std(axis=0)
         V_WE += noise * np.repeat([part.rotation, part.position], 3)
     V_WE *= minimum_jerk(np.clip(np.arange(len(q)) / RATE, 0.0, 1.0))[:, None]
-    V = shift(V_WE, -chain.pose(q)[:, :3, 3])
-    return q + damped_joint_motion(chain.jacobian(q), V)
+    X_WE, J = chain.pose_and_jacobian(q)
+    return q + damped_joint_motion(J, shift(V_WE, -X_WE[:, :3, 3]))

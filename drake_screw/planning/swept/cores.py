@@ -19,7 +19,6 @@ from pydrake.geometry import (
 from pydrake.geometry import (
     Convex as ConvexShape,
 )
-from scipy.spatial import ConvexHull
 
 from drake_screw.planning.swept import convex
 from drake_screw.planning.swept.convex import BALL, Convex
@@ -71,7 +70,11 @@ class Core:
 
 
 def core_of(shape: Shape) -> Core | None:
-    """A shape's core; None of a kind that is not known here."""
+    """A shape's core; None of a kind that is not known here.
+
+    Raises:
+        ValueError: a mesh is flat.
+    """
     ball = 0.0
     match shape:
         case Sphere():
@@ -109,9 +112,14 @@ def _plain(kind: int, size: Array, ball: float, p: Array) -> Core:
 
 def _hull(shape: Mesh | ConvexShape) -> Core:
     """The convex hull of a mesh, which is what Drake takes it for."""
+    from scipy.spatial import ConvexHull, QhullError  # take long to import
+
     surface = shape.GetConvexHull()
     points = vertices(surface)
-    hull = ConvexHull(points)
+    try:
+        hull = ConvexHull(points)
+    except QhullError as error:
+        raise ValueError("a flat mesh") from error
     corners = points[hull.vertices]
     number = np.full(len(points), -1)
     number[hull.vertices] = np.arange(len(hull.vertices))

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydrake.geometry import GeometryId, Role
 from pydrake.multibody.tree import BodyIndex, RigidBody
-from scipy.spatial import QhullError
 
 from drake_screw.errors import ModelError
 from drake_screw.planning.swept.cell import Cell
@@ -57,7 +56,7 @@ def cell_of(workcell: Workcell, clearance: float = 0.0) -> tuple[Cell, Array]:
         shape, body = inspector.GetShape(geometry), body_of(geometry)
         try:
             core = core_of(shape)
-        except QhullError as error:
+        except ValueError as error:
             raise ModelError(
                 f"this mesh is flat, and a collision shape of '{workcell.name(body.index())}'",
                 remedy="Give it some thickness, or take a thin box in its place.",

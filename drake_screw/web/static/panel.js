@@ -49,6 +49,12 @@ function entry(number, color, words) {
   item.append(make("span", number, "number"), chip, make("span", words));
   return item;
 }
+// A saved page carries its scene out after its scripts, one command at a time.
+const carry_out = viewer.handle_command_bytearray.bind(viewer);
+viewer.handle_command_bytearray = (bytes) => {
+  carry_out(bytes);
+  window.dispatchEvent(new Event("meshcat-message"));
+};
 window.addEventListener("meshcat-message", (() => {
   let timer;
   return () => { clearTimeout(timer); timer = setTimeout(() => scene.apply(), 40); };

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from drake_screw.processes import Crew, WorkerLost, share_out
+from drake_screw.sharing import Crew, WorkerLost, share_out
 
 
 def tool(start: int) -> list[int]:
@@ -77,6 +77,23 @@ def test_a_killed_process_is_told_with_a_remedy() -> None:
     assert "--workers" in str(error.value)
 
 
+def end_twice(tool: Path, job: int) -> int:
+    """Ends its process at job 5, at the first two tries."""
+    marks = [tool / f"{job}.{number}" for number in range(2)]
+    left = [mark for mark in marks if not mark.exists()]
+    if job == 5 and left:
+        left[0].touch()
+        os._exit(1)
+    return 10 * job
+
+
+def test_jobs_of_a_killed_process_are_done_once_more(tmp_path, caplog) -> None:
+    done = dict(share_out(end_twice, range(12), build=partial(Path, tmp_path), workers=2))
+    assert done == {job: 10 * job for job in range(12)}
+    assert len(list(tmp_path.iterdir())) == 2
+    assert "was killed; all are started again" in caplog.text
+
+
 def warns(tool: list[int], job: int) -> int:
     logger = logging.getLogger("drake")
     logger.warning("a link has no mass")
@@ -93,8 +110,8 @@ def test_what_drake_warns_of_is_not_said_again_by_each_process(capfd) -> None:
 
 BUSY = """
 import sys, time
-from drake_screw.processes import share_out
-from tests.test_processes import say_and_wait, tool
+from drake_screw.sharing import share_out
+from tests.sharing.test_processes import say_and_wait, tool
 from functools import partial
 
 if __name__ == "__main__":
@@ -111,7 +128,7 @@ def test_processes_end_with_the_one_they_work_for(tmp_path) -> None:
     """However that one ends."""
     script = tmp_path / "busy.py"
     script.write_text(BUSY)
-    root = str(Path(__file__).parents[1])
+    root = str(Path(__file__).parents[2])
     main = subprocess.Popen(
         [sys.executable, str(script)],
         stdout=subprocess.PIPE,
