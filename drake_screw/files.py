@@ -18,11 +18,6 @@ from drake_screw.errors import DrakeScrewError, RunDirectoryError
 
 WRITABLE_OUTPUT = "Give an --output in a folder that exists and that you may write to."
 NO_FILE = "it is a device or a pipe, not a file"
-_RECORDS = {
-    "run.json": ("run.json", "scenario.yaml"),
-    "study.json": ("study.json", "scenario.yaml", "runs.csv"),
-}
-"""What a run or a study is known by, and the files in its folder that cannot be made again."""
 
 
 def write_text(file: Path, text: str, *, shared: bool = False) -> None:
@@ -137,41 +132,6 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
             (new / name).write_bytes(content)
 
     write_folder(folder, fill)
-
-
-def check_writable(file: Path, remedy: str) -> None:
-    """Refuse a file for a result that cannot be written, before the work is done.
-
-    Args:
-        file: that a user has named.
-        remedy: what the user can do about it.
-
-    Raises:
-        DrakeScrewError: there cannot be such a file, or a run or a study could not do without
-            what is there.
-    """
-    real = Path(os.path.realpath(file))
-    needed = {
-        name for mark, names in _RECORDS.items() if (real.parent / mark).exists() for name in names
-    }
-    if real.is_dir():
-        why = "it is a folder"
-    elif real.exists() and not real.is_file():
-        why = NO_FILE
-    elif real.name in needed and real.exists():
-        why = "a run or a study keeps there what it is"
-    elif not real.parent.is_dir():
-        why = f"there is no folder '{file.parent}'"
-    elif not os.access(real.parent, os.W_OK):
-        why = "its folder is read-only"
-    else:
-        return
-    raise DrakeScrewError(f"cannot be written: {why}", remedy=remedy, file=file)
-
-
-def writable(option: str) -> str:
-    """What to do about a file that an option names and that cannot be written."""
-    return f"Give {option} a file in a folder that exists and that you may write to."
 
 
 @contextmanager

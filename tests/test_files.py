@@ -12,7 +12,6 @@ import pytest
 
 from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
 from drake_screw.files import (
-    check_writable,
     file_hash,
     fresh_folder,
     make_folder,
@@ -20,6 +19,7 @@ from drake_screw.files import (
     write_text,
     writing,
 )
+from drake_screw.outputs import check_writable
 
 
 def test_a_fresh_folder_is_another_one_each_time(tmp_path: Path) -> None:

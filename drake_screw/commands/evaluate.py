@@ -18,7 +18,7 @@ from drake_screw.commands.options import (
     chosen_scenario,
 )
 from drake_screw.commands.output import JSON, Output, check_distinct
-from drake_screw.files import check_writable, writable
+from drake_screw.outputs import check_writable, writable
 
 EXAMPLE = (
     "drake-screw evaluate pouring --demonstrations demos --instances places.csv "

@@ -13,7 +13,7 @@ import typer
 from drake_screw.commands.options import VerboseOption
 from drake_screw.commands.output import Output
 from drake_screw.errors import DrakeScrewError, ScenarioError, unknown
-from drake_screw.files import check_writable, writable
+from drake_screw.outputs import check_writable, writable
 
 if TYPE_CHECKING:
     from drake_screw.onboarding.arms import FoundArm

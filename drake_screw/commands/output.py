@@ -12,7 +12,8 @@ from rich.console import Console
 from rich.segment import Segments
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.files import check_writable, writable, write_text, writing
+from drake_screw.files import write_text, writing
+from drake_screw.outputs import check_writable, writable
 
 if TYPE_CHECKING:
     from rich.table import Table

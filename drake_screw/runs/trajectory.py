@@ -16,7 +16,8 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
 from drake_screw.errors import ScenarioError, counted
 from drake_screw.execution.setting import Setting
-from drake_screw.files import WRITABLE_OUTPUT, check_writable, write_bytes, write_files, writing
+from drake_screw.files import WRITABLE_OUTPUT, write_bytes, write_files, writing
+from drake_screw.outputs import check_writable
 from drake_screw.plugins import find, names
 from drake_screw.robot import Arm
 from drake_screw.runs.run import open_run

@@ -10,7 +10,8 @@ from markupsafe import Markup
 from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.files import check_writable, write_text, writing
+from drake_screw.files import write_text, writing
+from drake_screw.outputs import check_writable
 from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.lifetime import page_meshcat, scratch
 from drake_screw.visualization.meshcat_page import add_to_page, render
