@@ -49,9 +49,8 @@ class Output:
         self.console.print(str(text), soft_wrap=True, markup=False, highlight=False)
 
     def print_table(self, table: Table) -> None:
-        """Print a table at its full width, wherever it goes."""
-        wide = self.console.render(table, self.console.options.update(width=WIDE))
-        self.console.print(Segments(wide), soft_wrap=True, end="")
+        """As `print_table`, where this says what it says."""
+        print_table(self.console, table)
 
     def present(self, result: object) -> None:
         """Print a result's words, and write it as JSON, if that is wanted.
@@ -83,6 +82,12 @@ class Output:
 
         with writing(Path(self._json), _remedy(JSON)):
             write_text(Path(self._json), text)
+
+
+def print_table(console: Console, table: Table) -> None:
+    """Print a table at its full width, wherever it goes: no name in it is cut short."""
+    wide = console.render(table, console.options.update(width=WIDE))
+    console.print(Segments(wide), soft_wrap=True, end="")
 
 
 def check_page(html: Path | None, json: str | None) -> None:
