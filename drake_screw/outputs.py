@@ -42,7 +42,8 @@ def check_writable(file: Path, remedy: str) -> None:
     elif real.name in needed and real.exists():
         why = "a run or a study keeps there what it is"
     elif not real.parent.is_dir():
-        why = f"there is no folder '{file.parent}'"
+        lacking = real.parent if file.parent.is_dir() else file.parent
+        why = f"there is no folder '{lacking}'"
     elif not os.access(real.parent, os.W_OK):
         why = "its folder is read-only"
     else:

@@ -154,6 +154,12 @@ def test_a_link_stays_and_what_it_leads_to_is_written(tmp_path: Path) -> None:
     assert [file.name for file in (tmp_path / "kept").iterdir()] == ["file"]
 
 
+def test_of_a_link_that_leads_nowhere_the_folder_that_lacks_is_named(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "none" / "file")
+    with pytest.raises(DrakeScrewError, match=f"there is no folder '{tmp_path / 'none'}'"):
+        check_writable(tmp_path / "link", "")
+
+
 def test_what_is_no_file_is_left_alone(tmp_path: Path) -> None:
     """A file in the place of /dev/null, say, would be a fault of the whole machine."""
     os.mkfifo(tmp_path / "pipe")
