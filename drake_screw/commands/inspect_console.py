@@ -82,6 +82,9 @@ def print_instance(reader: RunReader, selection: Selection, console: Console) ->
         return
     attempts = reader.attempts(selection.round, selection.instance)
     _print_place(reader, selection, console)
+    if not attempts:
+        console.print("no demonstration in this round: every instance fails")
+        return
     print_table(console, instance_table(attempts))
     for tried in attempts:
         text = f"demonstration {tried.number + 1} {headline(tried)}"

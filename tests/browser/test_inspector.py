@@ -7,8 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from rich.console import Console
 
-from drake_screw.runs.run import open_run
+from drake_screw.commands.inspect_console import inspect_run
+from drake_screw.runs.run import new_run, open_run
+from drake_screw.scenario.loader import load_scenario
 from drake_screw.screws import sclerp_position
 from drake_screw.visualization.attempt import DONE, FAILED
 from drake_screw.visualization.inspector import SAMPLES
@@ -153,6 +156,22 @@ def test_the_map_lies_as_the_scene_does(browser, opened, reader) -> None:
     assert across[0] == seen[0], "what is to the right on the map is so in 3-D"
     robot = "return document.querySelector('#map .robot').getBoundingClientRect().bottom"
     assert browser.ask(robot) < drawn[:, 1].min()
+
+
+def test_a_round_without_demonstrations_has_no_empty_headings(browser, tmp_path, capsys) -> None:
+    changes = ["demonstrations.initial=0", "demonstrations.budget=1", "objects.0.symmetry=null"]
+    for _ in new_run(load_scenario("pouring", changes), tmp_path / "run").events():
+        pass
+    page = tmp_path / "page.html"
+    inspect_run(tmp_path / "run", Console(), round=1, html=page)
+    assert "no demonstration in this round: every instance fails" in capsys.readouterr().out
+    browser.open(page.as_uri())
+    browser.until(lambda: browser.text("#no-demonstration"))
+    headings = browser.ask(
+        "return [...document.querySelectorAll('h2')].filter((h) => h.offsetParent)"
+        ".map((h) => h.firstChild.data)"
+    )
+    assert headings == ["Instance", "Demonstrations"]
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (1024, 700)])

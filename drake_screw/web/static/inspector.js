@@ -72,7 +72,8 @@ function select_attempt(index, at) {
     if (attempt.drawn) scene.show(attempt.drawn.path, i === selected);
   list_others();
   const attempt = drawn();
-  for (const id of ["track", "headline", "segments", "joints"]) element(id).hidden = !attempt;
+  element("no-demonstration").hidden = state.attempts.length > 0;
+  for (const id of ["track", "headline", "plan-part", "reach-part"]) element(id).hidden = !attempt;
   if (!attempt) { scene.apply(); return; }
   element("headline").textContent = attempt.headline;
   element("headline").style.borderColor = attempt.color;
