@@ -92,7 +92,8 @@ def _why(p_WO: Array, p_WE: Array, world: str) -> str:
     """The likely reason, by what would bring the object near the hand."""
 
     def near(place: Array) -> bool:
-        return bool(np.linalg.norm(p_WE - place, axis=1).min() <= NEAR)
+        with np.errstate(over="ignore"):
+            return bool(np.linalg.norm(p_WE - place, axis=1).min() <= NEAR)
 
     if near(p_WO / 1000.0) or np.abs(p_WO).max() > 50.0:
         return "It looks like millimetres: object poses are in metres."

@@ -179,7 +179,9 @@ def read_object_poses(file: PathLike) -> Array:
         raise RecordingError(f"{len(rows)} rows; 4 for each object are needed", file=file)
     X_WO = np.array(rows).reshape(-1, 4, 4)
     R = X_WO[:, :3, :3]
-    if np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(3)).max() > 1e-3 or (np.linalg.det(R) < 0).any():
+    with np.errstate(over="ignore", invalid="ignore"):
+        off = np.abs(np.swapaxes(R, -1, -2) @ R - np.eye(3)).max()
+    if not off <= 1e-3 or (np.linalg.det(R) < 0).any():
         raise RecordingError(
             "the 3x3 part of a matrix is not a rotation",
             remedy="Its columns must be unit vectors at right angles, right-handed.",

@@ -74,32 +74,6 @@ class Recording:
         """Length in s."""
         return float(self.t[-1] - self.t[0])
 
-    def part(self, start: float, end: float) -> Recording:
-        """What was recorded from `start` to `end`, in s; time begins at 0 again.
-
-        Raises:
-            RecordingError: those are fewer than two samples.
-        """
-        kept = (self.t >= start - 1e-9) & (self.t <= end + 1e-9)
-        if kept.all():
-            return self
-        if kept.sum() < 2:
-            raise RecordingError(
-                f"{counted(int(kept.sum()), 'sample')} from {start:.2f} s to {end:.2f} s",
-                remedy="Keep more of the recording; it needs at least 2.",
-                file=self.source,
-            )
-        t = self.t[kept]
-        note = f"kept {t[0]:.2f} s to {t[-1]:.2f} s of {self.duration:.2f} s"
-        return replace(
-            self,
-            t=t - t[0],
-            q=self.q[kept],
-            X_WE=None if self.X_WE is None else self.X_WE[kept],
-            notes=(*self.notes, note),
-            cut=True,
-        )
-
 
 def checked(
     recording: Recording,

@@ -82,7 +82,8 @@ class Given:
 
     def _matrix(self, X: Array) -> Array:
         R = X[:3, :3]
-        fits = np.abs(R.T @ R - np.eye(3)).max() < 1e-3 and np.linalg.det(R) > 0.0
+        with np.errstate(over="ignore", invalid="ignore"):
+            fits = np.abs(R.T @ R - np.eye(3)).max() < 1e-3 and np.linalg.det(R) > 0.0
         if not fits or not np.allclose(X[3], [0, 0, 0, 1], atol=1e-6):
             raise self._error("a matrix that is not a pose (its last row is 0,0,0,1)")
         return normalized(X)

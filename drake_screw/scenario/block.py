@@ -30,7 +30,7 @@ def refusal(message: str, remedy: str | None = None) -> PydanticCustomError:
     return PydanticCustomError("rule", "{message}", {"message": message, "remedy": remedy})
 
 
-LARGEST = {"m": 1e3, "kg": 1e6}
+LARGEST = {"m": 1e3, "rad": 1e3, "kg": 1e6}
 """By unit: what is larger is in another one, and more than geometry and dynamics can be done with.
 Of the shapes of a robot's model see `robot.model_text.LARGEST`."""
 
@@ -61,12 +61,12 @@ class Block(BaseModel):
         for name, about in type(self).model_fields.items():
             extra, value = about.json_schema_extra, getattr(self, name)
             unit = str(extra.get("unit")) if isinstance(extra, dict) else ""
-            if unit in LARGEST and value is not None:
-                ends = getattr(value, "ends", value)
-                largest = max(ends if isinstance(ends, tuple) else (ends,), key=abs)
-                if abs(largest) > LARGEST[unit]:
-                    message = f"{largest:g} {unit} is beyond {LARGEST[unit]:,.0f} {unit}"
-                    yield Problem((name,), message, f"Numbers here are in {unit}.")
+            ends = getattr(value, "ends", value)
+            numbers = [x for x in (ends if isinstance(ends, tuple) else (ends,)) if _is_number(x)]
+            largest = max(numbers, key=abs, default=0.0)
+            if unit in LARGEST and abs(largest) > LARGEST[unit]:
+                message = f"{largest:g} {unit} is beyond {LARGEST[unit]:,.0f} {unit}"
+                yield Problem((name,), message, f"Numbers here are in {unit}.")
 
     @model_validator(mode="before")
     @classmethod
@@ -82,3 +82,7 @@ class Block(BaseModel):
         if errors:
             raise ValidationError.from_exception_data(type(self).__name__, errors)
         return self
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -60,7 +60,7 @@ from. [pouring_paper](../scenarios/pouring_paper.yaml) and
 [scooping_paper](../scenarios/scooping_paper.yaml) read the tasks as the paper does, whatever
 becomes of the defaults.
 
-- Lengths are in metres, up to 1,000, angles in radians. The world's frame is the frame
+- Lengths are in metres, angles in radians, both up to 1,000. The world's frame is the frame
   `robot.base`, z up.
 - A path in the file is relative to the file; `~` is your home folder.
 - An empty value stands for an empty mapping, and `null` for "none" where that is the default.

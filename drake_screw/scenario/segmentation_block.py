@@ -63,8 +63,8 @@ class SegmentationBlock(Block):
         data = {} if data is None else data
         if not isinstance(data, dict):
             return data
-        defaults = DEFAULTS.get(str(data.get("method", FAITHFUL)), {})
-        return {**defaults, **{name: value for name, value in data.items() if value is not None}}
+        given = {name: value for name, value in data.items() if value is not None}
+        return {**DEFAULTS.get(str(given.get("method", FAITHFUL)), {}), **given}
 
     @property
     def config(self) -> SegmentationConfig | FaithfulConfig:

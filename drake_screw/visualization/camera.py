@@ -32,7 +32,7 @@ def camera_pose(points: ArrayLike, back: ArrayLike, pivot: ArrayLike) -> tuple[A
 
     >>> at, target = camera_pose([[0, -1, 0], [0, 1, 0]], [1, 0, 0], [0, 0, 0])
     >>> at.round(3).tolist(), target.round(3).tolist()
-    ([1.631, 0.0, 0.0], [0.0, 0.0, 0.0])
+    ([1.783, 0.0, 0.0], [0.0, 0.0, 0.0])
     """
     p = np.asarray(points, dtype=float)
     u = np.asarray(back, dtype=float) / np.linalg.norm(back)

@@ -174,6 +174,7 @@ class PanelServer:
                 text = b'{"version":%d,"state":%b}' % (self._version, self._state) if new else b""
             try:
                 _answer(request, 200 if new else 204, "application/json", text)
+                request.close_connection |= self._closed  # or the page would ask for ever
             finally:
                 with self._changed:
                     self._waiting -= 1

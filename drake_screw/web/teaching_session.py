@@ -12,6 +12,7 @@ import numpy as np
 from drake_screw.acquisition import Suggestion
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import FaithfulConfig, Recording
+from drake_screw.demonstrations.part import part_of
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import DrakeScrewError
 from drake_screw.runs.narration import place
@@ -242,7 +243,7 @@ class TeachingSession:
     def _cut(self, whole: Recording) -> None:
         """Offer the part of a recording between the ends, and draw it."""
         start, end = self._ends
-        part = whole.part(start, end)
+        part = part_of(whole, start, end)
         found = offer(self._setup, self._X_WO, self._number, part, start if part.cut else 0.0)
         self._offer, self._message = found, found.words
         self._inspector.draw(found.tried)

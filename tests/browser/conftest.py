@@ -118,16 +118,6 @@ class Browser:
         hand.pointer_up()
         actions.perform()
 
-    @contextmanager
-    def window(self, width: int, height: int) -> Iterator[None]:
-        """A window of another size; a narrow one is a phone's."""
-        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-        try:
-            yield
-        finally:
-            self.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-
     def fits(self) -> bool:
         """Whether nothing of the page is wider than its window, nor of a panel than the panel."""
         return self.ask(

@@ -50,10 +50,10 @@ def test_executions_are_listed_and_played(browser, trials, tmp_path) -> None:
     assert "(region 9), with demo_02: as planned" in browser.text(entries[1])
     browser.click("#play")
     browser.until(lambda: browser.text("#play") == "play")
+    browser.slide("#time", 0.2)
+    browser.until(lambda: browser.text("#clock").startswith("1 of 2, 0.2 of "))
     browser.click(f"{entries[1]} button")
-    browser.click("#play")
-    browser.until(lambda: browser.text("#play") == "play")
-    assert browser.text("#clock").startswith("2 of 2, ")
+    browser.until(lambda: browser.text("#clock").startswith("2 of 2, "))
     length = trials[0].execution.t[-1]
     browser.slide("#time", length + PAUSE + 0.5)
     browser.until(lambda: browser.text("#clock") == f"2 of 2, 0.5 of {length:.1f} s")
@@ -71,8 +71,7 @@ def test_executions_are_listed_and_played(browser, trials, tmp_path) -> None:
         """
     )
     assert max(heights) > 1000  # a cylinder has fewer points
-    with browser.window(390, 844):
-        browser.until(lambda: browser.ask("return innerWidth") == 390)
+    with browser.screen_of(390, 844):
         assert browser.fits()
     assert browser.complaints() == []
 

@@ -102,8 +102,7 @@ def test_a_run_is_told_as_it_happens(browser, run) -> None:
         )
         browser.until(lambda: max(upright(browser, n) for n in (1, 2)) < 0.06)
         for width, height in ((390, 844), (1024, 768)):
-            with browser.window(width, height):
-                browser.until(lambda w=width: browser.ask("return innerWidth") == w)
+            with browser.screen_of(width, height):
                 assert browser.fits()
         assert browser.complaints() == []
     finally:

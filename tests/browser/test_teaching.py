@@ -78,8 +78,7 @@ def test_the_hand_follows_its_handle_and_the_margins_follow_the_joints(teaching)
 
 def test_a_phone_is_wide_enough_and_a_finger_turns_the_hand(teaching) -> None:
     browser = teaching
-    with browser.window(390, 844):
-        browser.until(lambda: browser.ask("return innerWidth") == 390)
+    with browser.screen_of(390, 844):
         assert browser.fits()
         before = settled(browser)
         browser.pull("[data-grip=turn2] .line", (25, 20), touch=True)
@@ -87,8 +86,7 @@ def test_a_phone_is_wide_enough_and_a_finger_turns_the_hand(teaching) -> None:
         after = settled(browser)
         np.testing.assert_allclose(after[:3, 2], before[:3, 2], atol=5e-3)
         np.testing.assert_allclose(after[:3, 3], before[:3, 3], atol=2e-3)
-    with browser.window(1024, 768):
-        browser.until(lambda: browser.ask("return innerWidth") == 1024)
+    with browser.screen_of(1024, 768):
         assert browser.fits()
     assert browser.complaints() == []
 

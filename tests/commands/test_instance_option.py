@@ -55,7 +55,7 @@ def test_two_objects_are_executed(command: Command, two: Path) -> None:
     assert "done                       1 of 1" in out
     (file,) = (two / "executions").glob("*/executions.csv")
     (row,) = csv.DictReader(file.open())
-    place = [float(row[f"{name}_{axis}"]) for name in NAMED for axis in ("x", "y", "yaw")]
+    place = [float(row[f"{name}.{axis}"]) for name in NAMED for axis in ("x", "y", "yaw")]
     assert place == [*NAMED["bowl"], 0.0, *NAMED["cup"]]
     assert (row["demonstration"], row["status"], row["contacts"]) == ("demo_01", "done", "")
 

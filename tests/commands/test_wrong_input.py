@@ -127,8 +127,6 @@ EVALUATE = ["evaluate", "pouring", "--demonstrations", "nowhere"]
         (["execute", ".", "--live", "--port", "99999"], "cannot serve on localhost, port 99999"),
         (["export", "nowhere", "--instance", "0.9", "0.3", "--output", "x"], "not a run directory"),
         (["export", "nowhere", "--instance", "0.9", "--output", "x"], "Give OBJECT=X,Y"),
-        ([*EVALUATE, "--instances", "nowhere.csv", "--output", "x.csv"], "nowhere.csv"),
-        ([*EVALUATE, "--instances", ".", "--output", "x.csv"], "cannot be read"),
         ([*EVALUATE, "--instances", "places.csv", "--output", "x.csv"], "nowhere"),
     ],
 )
@@ -140,6 +138,20 @@ def test_wrong_input_ends_with_2_and_one_message(
     assert expected in err
     assert "Traceback" not in err
     assert list(Path().iterdir()) == [Path("places.csv")]
+
+
+@pytest.mark.parametrize(
+    ("table", "expected"), [("nowhere.csv", "nowhere.csv"), (".", "cannot be read")]
+)
+def test_a_table_of_instances_that_is_none(
+    command: Command, library: Path, table: str, expected: str
+) -> None:
+    given = ("evaluate", "pouring", "--demonstrations", library, "--instances", table)
+    code, out, err = command(*given, "--output", "x.csv")
+    assert (code, out) == (2, "")
+    assert expected in err
+    assert "Traceback" not in err
+    assert list(Path().iterdir()) == []
 
 
 @pytest.mark.parametrize(

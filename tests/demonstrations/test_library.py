@@ -159,6 +159,7 @@ def test_faults_in_the_joint_angles_are_named_with_file_and_line(
         ("\n" + POSES.replace("0,1,0,-0.1", "0,one,0,0"), "not numbers", 3),
         (POSES.replace("1,0,0,0.8", "1.01,0,0,0.8"), "not a rotation", None),
         (POSES.replace("1,0,0,0.8", "-1,0,0,0.8"), "not a rotation", None),
+        (POSES.replace("1,0,0,0.8", "1,1e308,0,0.8"), "not a rotation", None),
     ],
 )
 def test_faults_in_the_object_poses_are_named_with_file_and_line(

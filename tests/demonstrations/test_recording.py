@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from drake_screw.demonstrations import Recording
+from drake_screw.demonstrations.part import part_of
 from drake_screw.demonstrations.recording import checked
 from drake_screw.errors import RecordingError
 
@@ -223,12 +224,12 @@ def test_a_part_begins_at_zero_and_says_what_it_is_of() -> None:
     X_WE[:, 0, 3] = t
     by_hand = Recording("hand", (), t, np.zeros((11, 0)), np.eye(4)[None], X_WE=X_WE)
     for whole in (recording(t, q), by_hand):
-        part = whole.part(0.03, 0.06)
+        part = part_of(whole, 0.03, 0.06)
         np.testing.assert_allclose(part.t, [0.0, 0.01, 0.02, 0.03], atol=1e-12)
         np.testing.assert_array_equal(part.q, whole.q[3:7])
         assert part.cut
         assert part.notes == ("kept 0.03 s to 0.06 s of 0.10 s",)
-        assert whole.part(0.0, 0.1) is whole
+        assert part_of(whole, 0.0, 0.1) is whole
         with pytest.raises(RecordingError, match=r"1 sample from 0\.03 s to 0\.03 s"):
-            whole.part(0.03, 0.03)
-    np.testing.assert_array_equal(by_hand.part(0.03, 0.06).X_WE, X_WE[3:7])
+            part_of(whole, 0.03, 0.03)
+    np.testing.assert_array_equal(part_of(by_hand, 0.03, 0.06).X_WE, X_WE[3:7])

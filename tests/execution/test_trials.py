@@ -13,6 +13,7 @@ from drake_screw.execution import Contact, ExecutionStatus, Phase, recording_htm
 from drake_screw.execution.allowed import Allowed
 from drake_screw.execution.free_objects import Displacement
 from drake_screw.execution.parallel import Job, StationConfig, execute_all
+from drake_screw.execution.playback import PAUSE, spans
 from drake_screw.execution.trials import Trial, summarize, trials_csv
 from drake_screw.robot import ObjectConfig
 from drake_screw.screws import pose
@@ -140,3 +141,10 @@ def test_the_recording_is_one_page_with_every_execution(config, executed) -> Non
     assert "<html" in one
     assert "https://" not in one.split("<body")[0]
     assert len(two) > len(one) + 50_000
+
+
+def test_executions_are_played_one_after_the_other(executed) -> None:
+    length = float(executed[0].t[-1])
+    first, second = spans([executed[0], executed[0]])
+    assert first == (0.0, length)
+    assert second == pytest.approx((length + PAUSE, 2.0 * length + PAUSE))

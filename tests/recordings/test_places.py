@@ -38,6 +38,7 @@ def test_where_the_height_varies_all_of_a_pose_is_asked_for() -> None:
         (((1.0, 2.0), (3.0,)), "'((1.0, 2.0), (3.0,))'"),
         ("", "''"),
         ((float("nan"), 0.0), "a number that is not finite"),
+        ((1e308,) * 15 + (1.0,), "a matrix that is not a pose (its last row is 0,0,0,1)"),
     ],
 )
 def test_what_is_no_place_is_quoted_with_the_recordings_file(place: object, found: str) -> None:

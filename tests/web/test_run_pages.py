@@ -12,6 +12,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from drake_screw.acquisition import Finished, Status
 from drake_screw.assembly.setup import Setup
 from drake_screw.errors import DrakeScrewError, RecordingError
 from drake_screw.scenario.loader import dump_scenario, load_scenario
@@ -136,3 +137,15 @@ def test_a_folder_that_cannot_be_watched(tmp_path) -> None:
     teacher = f"teacher={{kind: interactive, folder: {tmp_path / 'file'}}}"
     with pytest.raises(RecordingError, match="file: cannot be watched"):
         open_pages([teacher], [])
+
+
+def test_a_run_that_has_finished_says_where_its_page_is_kept(said, opened, tmp_path) -> None:
+    scenario = load_scenario("pouring", ["meshcat=true"])
+    opened.append(RunPages(scenario, announce=said.append))
+    (pages,) = opened
+    pages.open(Setup(scenario), tmp_path)
+    assert pages.live is not None
+    state = pages.live.url + "state?after=0"
+    assert '"finished": ""' in read(state)
+    pages.live(Finished(Status.INSUFFICIENT, "the budget is used up", None, ()))
+    assert f"is kept in {tmp_path / 'meshcat.html'}" in read(state)
