@@ -38,6 +38,7 @@ source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb", ".rst": "restructuredtex
 root_doc = "docs/index"
 
 html_theme = "furo"
+pygments_dark_style = "monokai"  # the default underlines modules as if they were links
 html_title = f"drake_screw {version}"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
@@ -112,8 +113,8 @@ def _look_up_nearby(app: Sphinx, doctree: nodes.document) -> None:
 def _titles_for_files(app: Sphinx, doctree: nodes.document, page: str) -> None:
     """A link that a reader of the repository sees as `python.md` has the page's title here."""
     for link in doctree.findall(nodes.reference):
-        file = Path(page).parent / link.get("refuri", "").partition("#")[0]
-        target = posixpath.normpath(file.with_suffix("").as_posix())
+        address = posixpath.join(posixpath.dirname(page), link.get("refuri", "").partition("#")[0])
+        target = posixpath.splitext(posixpath.normpath(address))[0]
         if re.fullmatch(r"[\w./]+\.md", link.astext()) and target in app.env.titles:
             link[:] = [nodes.Text(app.env.titles[target].astext())]
 
