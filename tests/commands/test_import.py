@@ -90,6 +90,13 @@ def test_a_column_that_may_be_the_time_is_named_and_the_line_that_says_so_works(
     assert "column 'Zeit (ms)' in ms (by its name)" in out
 
 
+def test_recordings_are_not_brought_in_again_but_looked_at(command: Command, library: Path) -> None:
+    code, _, err = command("import", library, "--dry-run")
+    assert code == 2
+    assert "these are recordings already" in err
+    assert f"drake-screw look {library}" in " ".join(err.split())
+
+
 def test_a_mapping_beside_the_data_is_read_and_checked(command: Command, log: Path) -> None:
     beside = log.parent / "recording.yaml"
     beside.write_text("objects: {bowl: [0.8, 0.1]}\nangels: rad\n")

@@ -145,7 +145,8 @@ def test_recordings_of_another_robot(command: Command, library: Path) -> None:
     [
         (["nowhere"], "nowhere: no such recording or library"),
         (["."], "no recordings here"),
-        (["{library}/demo_01/joint_angles.csv"], "a recording is a folder"),
+        (["{library}/demo_01/joint_angles.csv"], "Give the folder it stands in: "),
+        (["{broken}/log.csv"], "library/log.csv --output recordings"),
         (["{library}", "--scenario", "puring"], "Did you mean 'pouring'"),
         (["{library}", "--set", "segmentation.spacin=1"], "Did you mean 'spacing'"),
         (["{library}", "--html", "no/page.html"], "there is no folder 'no'"),
@@ -169,6 +170,7 @@ def test_wrong_input(
     lines = file.read_text().splitlines()
     lines[8] = re.sub(r",[^,]*", ",nan", lines[8], count=1)
     file.write_text("\n".join(lines) + "\n")
+    (broken / "log.csv").write_text("t,q0\n")
     code, out, err = command("look", *(a.format(library=library, broken=broken) for a in args))
     assert (code, out) == (2, "")
     assert expected in " ".join(err.split())
