@@ -142,6 +142,12 @@ def execute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return module
 
 
+def test_without_the_extra_docs_its_name_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "jupyter_cache", None)
+    with pytest.raises(SystemExit, match=r"jupyter_cache is not installed.*'\.\[docs\]'"):
+        load("execute")
+
+
 def test_outputs_are_kept_by_what_they_were_made_with(execute: ModuleType) -> None:
     before = execute.cache_folder()
     assert execute.cache_folder() == before
