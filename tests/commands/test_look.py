@@ -82,6 +82,15 @@ def test_a_library_is_a_table_with_what_is_refused(command: Command, spoilt: Pat
     assert all(b"<svg" in base64.b64decode(picture) for picture in pictures)
 
 
+def test_the_page_of_a_folder_with_one_recording_has_the_scene(
+    command: Command, library: Path
+) -> None:
+    shutil.copytree(library / "demo_01", "mine/demo_01")
+    code, _, _ = command("look", "mine", "--html", "page.html", *FAITHFUL)
+    assert code == 0
+    assert len(re.findall(r'srcdoc="', Path("page.html").read_text())) == 1
+
+
 def test_the_page_of_one_recording_has_the_scene(command: Command, library: Path) -> None:
     code, out, _ = command("look", library / "demo_01", "--html", "page.html")
     assert (code, "written: page.html" in out) == (0, True)
