@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import signal
+import threading
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,15 @@ from hypothesis import settings
 
 settings.register_profile("shared", deadline=None)
 settings.load_profile("shared")
+
+
+def pytest_configure() -> None:
+    """Signals end what tests start, even where nohup or a job in the background ignores them."""
+    if threading.current_thread() is threading.main_thread():
+        for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            if signal.getsignal(each) is signal.SIG_IGN:
+                usual = signal.default_int_handler if each is signal.SIGINT else signal.SIG_DFL
+                signal.signal(each, usual)
 
 
 @pytest.fixture(scope="session")
