@@ -207,7 +207,7 @@ def make_folder(path: Path, what: str, files: Mapping[str, str]) -> None:
 
     Raises:
         RunDirectoryError: there is something at that place already.
-        OSError: it cannot be written; what was written is removed.
+        OSError: it cannot be written; what was written is removed, as it is by an interruption.
     """
     *_, last = files
     begun = path / f".{last}.part"
@@ -225,7 +225,7 @@ def make_folder(path: Path, what: str, files: Mapping[str, str]) -> None:
         begun.touch()
         for name, text in files.items():
             write_text(path / name, text)
-    except OSError:
+    except BaseException:
         for name in {*makings, last}:
             with suppress(OSError):
                 (path / name).unlink(missing_ok=True)

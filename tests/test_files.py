@@ -5,7 +5,9 @@ from __future__ import annotations
 import errno
 import os
 import resource
-from collections.abc import Callable, Iterator
+import subprocess
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -64,32 +66,36 @@ def test_a_folder_is_made_where_there_is_nothing_or_an_empty_one(tmp_path: Path)
     assert (tmp_path / "mine" / "scenario").read_text() == "kept"
 
 
-class Killed(BaseException):
-    """Stands for a kill: nothing is tidied up after it."""
+KILLED = """
+import os, sys
+from pathlib import Path
+from drake_screw.files import make_folder
+from tests.test_files import FIRST
+
+calls = 0
+
+def killed_at(function):
+    def call(*arguments):
+        global calls
+        calls += 1
+        if calls == int(sys.argv[2]):
+            os._exit(137)
+        return function(*arguments)
+    return call
+
+Path.write_bytes, os.replace = killed_at(Path.write_bytes), killed_at(os.replace)
+make_folder(Path(sys.argv[1]), "run", FIRST)
+"""
 
 
 @pytest.mark.parametrize("system_call", range(1, 5))
 def test_a_folder_that_a_killed_process_had_begun_can_be_made_again(
-    system_call: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    system_call: int, tmp_path: Path
 ) -> None:
-    calls = 0
-
-    def killed_at(function: Callable[..., object]) -> Callable[..., object]:
-        def call(*arguments: object) -> object:
-            nonlocal calls
-            calls += 1
-            if calls == system_call:
-                raise Killed
-            return function(*arguments)
-
-        return call
-
     new = tmp_path / "new"
-    with monkeypatch.context() as patch:
-        patch.setattr(Path, "write_bytes", killed_at(Path.write_bytes))
-        patch.setattr(os, "replace", killed_at(os.replace))
-        with pytest.raises(Killed):
-            make_folder(new, "run", FIRST)
+    command = [sys.executable, "-c", KILLED, str(new), str(system_call)]
+    root = Path(__file__).parents[1]
+    assert subprocess.run(command, cwd=root, check=False).returncode == 137
     assert not (new / "record").exists()
     make_folder(new, "run", FIRST)
     assert {file.name: file.read_text() for file in new.iterdir()} == FIRST
