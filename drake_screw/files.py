@@ -9,16 +9,15 @@ import io
 import os
 import resource
 import shutil
-import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from datetime import datetime
-from functools import lru_cache
 from pathlib import Path
 
 from drake_screw.errors import DrakeScrewError, RunDirectoryError
 
 WRITABLE_OUTPUT = "Give an --output in a folder that exists and that you may write to."
+NO_FILE = "it is a device or a pipe, not a file"
 
 
 def write_text(file: Path, text: str, *, shared: bool = False) -> None:
@@ -54,17 +53,20 @@ def appearing(file: Path, *, shared: bool = False) -> Iterator[Path]:
     """A context in which a file is written bit by bit, and after which it is there whole.
 
     Args:
-        file: to appear.
+        file: to appear; where it is a symbolic link, what that leads to.
         shared: whether other processes may be writing the same file just now.
 
     Yields:
         Where to write it, in the same folder. If something is raised, nothing stays of it.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: it cannot be written, or is something else than a file, which is left alone.
     """
+    file = Path(os.path.realpath(file))
     if file.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
+    if file.exists() and not file.is_file():
+        raise FileExistsError(errno.EEXIST, NO_FILE, str(file))
     own = f".{os.getpid()}" if shared else ""
     temporary = file.with_name(f".{file.name}{own}.part")
     try:
@@ -130,11 +132,6 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
             (new / name).write_bytes(content)
 
     write_folder(folder, fill)
-
-
-def writable(option: str) -> str:
-    """What to do about a file that an option names and that cannot be written."""
-    return f"Give {option} a file in a folder that exists and that you may write to."
 
 
 @contextmanager
@@ -207,7 +204,7 @@ def make_folder(path: Path, what: str, files: Mapping[str, str]) -> None:
 
     Raises:
         RunDirectoryError: there is something at that place already.
-        OSError: it cannot be written; what was written is removed.
+        OSError: it cannot be written; what was written is removed, as it is by an interruption.
     """
     *_, last = files
     begun = path / f".{last}.part"
@@ -225,7 +222,7 @@ def make_folder(path: Path, what: str, files: Mapping[str, str]) -> None:
         begun.touch()
         for name, text in files.items():
             write_text(path / name, text)
-    except OSError:
+    except BaseException:
         for name in {*makings, last}:
             with suppress(OSError):
                 (path / name).unlink(missing_ok=True)
@@ -250,39 +247,6 @@ def fresh_folder(parent: Path) -> Path:
         except FileExistsError:
             count += 1
             path = parent / f"{stamp}_{count}"
-
-
-def cache_folder() -> Path:
-    """Where what is worked out once is kept: numba's cache folder if it has one, else the user's.
-
-    Where neither can be written to, a temporary folder, which is a new one in every process.
-
-    Raises:
-        DrakeScrewError: not even that can be made.
-    """
-    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    for parent in (os.environ.get("NUMBA_CACHE_DIR") or user, user):
-        if parent.startswith("~"):  # nobody's home is known
-            continue
-        folder = Path(parent) / "drake_screw"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=folder):
-                return folder
-        except OSError:
-            continue
-    return _temporary()
-
-
-@lru_cache
-def _temporary() -> Path:
-    try:
-        return Path(tempfile.mkdtemp(prefix="drake_screw_"))
-    except OSError as error:
-        raise DrakeScrewError(
-            f"there is no folder to keep anything in for a while: {error.strerror or error}",
-            remedy="Set XDG_CACHE_HOME or TMPDIR to a folder that you may write to.",
-        ) from error
 
 
 def printable(name: str) -> str:

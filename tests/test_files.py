@@ -19,6 +19,7 @@ from drake_screw.files import (
     write_text,
     writing,
 )
+from drake_screw.outputs import check_writable
 
 
 def test_a_fresh_folder_is_another_one_each_time(tmp_path: Path) -> None:
@@ -64,35 +65,52 @@ def test_a_folder_is_made_where_there_is_nothing_or_an_empty_one(tmp_path: Path)
     assert (tmp_path / "mine" / "scenario").read_text() == "kept"
 
 
-class Killed(BaseException):
-    """Stands for a kill: nothing is tidied up after it."""
+def _interrupt_at(system_call: int, patch: pytest.MonkeyPatch, stop: Callable[[], object]) -> None:
+    """Writing and renaming stop at one of the calls."""
+    calls = 0
+
+    def stopped_at(function: Callable[..., object]) -> Callable[..., object]:
+        def call(*arguments: object) -> object:
+            nonlocal calls
+            calls += 1
+            if calls == system_call:
+                stop()
+            return function(*arguments)
+
+        return call
+
+    patch.setattr(Path, "write_bytes", stopped_at(Path.write_bytes))
+    patch.setattr(os, "replace", stopped_at(os.replace))
 
 
 @pytest.mark.parametrize("system_call", range(1, 5))
 def test_a_folder_that_a_killed_process_had_begun_can_be_made_again(
     system_call: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    calls = 0
-
-    def killed_at(function: Callable[..., object]) -> Callable[..., object]:
-        def call(*arguments: object) -> object:
-            nonlocal calls
-            calls += 1
-            if calls == system_call:
-                raise Killed
-            return function(*arguments)
-
-        return call
-
     new = tmp_path / "new"
-    with monkeypatch.context() as patch:
-        patch.setattr(Path, "write_bytes", killed_at(Path.write_bytes))
-        patch.setattr(os, "replace", killed_at(os.replace))
-        with pytest.raises(Killed):
-            make_folder(new, "run", FIRST)
+    if (child := os.fork()) == 0:
+        _interrupt_at(system_call, monkeypatch, lambda: os._exit(9))
+        make_folder(new, "run", FIRST)
+        os._exit(0)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 9
     assert not (new / "record").exists()
+    assert list(new.iterdir())
     make_folder(new, "run", FIRST)
     assert {file.name: file.read_text() for file in new.iterdir()} == FIRST
+
+
+@pytest.mark.parametrize("system_call", range(1, 5))
+def test_of_a_folder_that_was_interrupted_before_it_had_begun_nothing_stays(
+    system_call: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        _interrupt_at(system_call, patch, interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            make_folder(tmp_path / "new", "run", FIRST)
+    assert not list(tmp_path.iterdir())
 
 
 def test_of_a_folder_that_cannot_be_filled_nothing_stays(
@@ -125,6 +143,48 @@ def test_text_replaces_a_file_at_once(tmp_path: Path) -> None:
     assert [f.name for f in tmp_path.iterdir()] == ["a"]
     (tmp_path / "b").write_bytes(b"abc")
     assert file_hash(tmp_path / "b").startswith("ba7816bf8f01cfea414140de5dae2223")
+
+
+def test_a_link_stays_and_what_it_leads_to_is_written(tmp_path: Path) -> None:
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "kept" / "file")
+    write_text(tmp_path / "link", "text")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "kept" / "file").read_text() == "text"
+    assert [file.name for file in (tmp_path / "kept").iterdir()] == ["file"]
+
+
+def test_of_a_link_that_leads_nowhere_the_folder_that_lacks_is_named(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "none" / "file")
+    with pytest.raises(DrakeScrewError, match=f"there is no folder '{tmp_path / 'none'}'"):
+        check_writable(tmp_path / "link", "")
+
+
+def test_what_is_no_file_is_left_alone(tmp_path: Path) -> None:
+    """A file in the place of /dev/null, say, would be a fault of the whole machine."""
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to(tmp_path / "pipe")
+    for name in ("pipe", "link"):
+        place = tmp_path / name
+        with pytest.raises(DrakeScrewError, match="it is a device or a pipe"), writing(place, ""):
+            write_text(place, "text")
+        with pytest.raises(DrakeScrewError, match="it is a device or a pipe"):
+            check_writable(place, "")
+        assert place.is_fifo()
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_result_does_not_take_the_place_of_what_a_run_or_a_study_is(tmp_path: Path) -> None:
+    check_writable(tmp_path / "scenario.yaml", "")
+    (tmp_path / "scenario.yaml").touch()
+    check_writable(tmp_path / "scenario.yaml", "")
+    (tmp_path / "run.json").touch()
+    (tmp_path / "run.html").touch()
+    for name in ("run.json", "scenario.yaml"):
+        with pytest.raises(DrakeScrewError, match="a run or a study keeps there what it is"):
+            check_writable(tmp_path / name, "")
+    check_writable(tmp_path / "run.html", "")
+    check_writable(tmp_path / "study.json", "")
 
 
 @pytest.fixture

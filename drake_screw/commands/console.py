@@ -23,6 +23,7 @@ from drake_screw.acquisition import (
 )
 from drake_screw.bandits import Verdict
 from drake_screw.commands.countdown import Pace, shown_progress
+from drake_screw.commands.output import print_table
 from drake_screw.runs.narration import describe
 from drake_screw.runs.summary import RunSummary
 from drake_screw.tasks import Regions
@@ -83,7 +84,7 @@ def show_event(event: Event, regions: Regions, console: Console) -> None:
         return
     console.print(Text(describe(event, regions)))
     if isinstance(event, RoundFinished):
-        console.print(round_table(event.verdict, event.regions))
+        print_table(console, round_table(event.verdict, event.regions))
 
 
 def show_summary(summary: RunSummary, console: Console) -> None:

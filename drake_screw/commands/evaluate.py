@@ -17,7 +17,8 @@ from drake_screw.commands.options import (
     chosen_cluster,
     chosen_scenario,
 )
-from drake_screw.commands.output import Output, check_writable
+from drake_screw.commands.output import JSON, Output, check_distinct
+from drake_screw.outputs import check_writable, writable
 
 EXAMPLE = (
     "drake-screw evaluate pouring --demonstrations demos --instances places.csv "
@@ -59,7 +60,8 @@ def evaluate(
     row is looked at before planning begins, and the output appears when it is whole.
     """
     out = Output(json)
-    check_writable(output, "--output")
+    check_writable(output, writable("--output"))
+    check_distinct({"--instances": instances, "--output": output, JSON: json})
     from drake_screw.commands.countdown import Countdown
     from drake_screw.runs.outcome_table import tabulate_outcomes
 

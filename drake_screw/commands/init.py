@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from drake_screw.commands.options import VerboseOption
-from drake_screw.commands.output import Output, check_writable
+from drake_screw.commands.output import Output
 from drake_screw.errors import DrakeScrewError, ScenarioError, unknown
+from drake_screw.outputs import check_writable, writable
 
 if TYPE_CHECKING:
     from drake_screw.onboarding.arms import FoundArm
@@ -114,7 +115,7 @@ def init(
     for suffix in MODEL_SUFFIXES:
         name = name.removesuffix(suffix)
     file = _checked(output or Path(f"{name}.yaml"))
-    check_writable(file, "--output")
+    check_writable(file, writable("--output"))
     out = Output()
     read = _read_as(robot, package or [], xacro or [], srdf)
     _make(read, file, arm, task, table_height, incomplete_shapes, preview, out)

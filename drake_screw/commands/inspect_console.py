@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from drake_screw.commands.countdown import Countdown
+from drake_screw.commands.output import print_table
 from drake_screw.runs.reader import RunReader
 from drake_screw.runs.run import open_run
 from drake_screw.steps import Step
@@ -81,7 +82,7 @@ def print_instance(reader: RunReader, selection: Selection, console: Console) ->
         return
     attempts = reader.attempts(selection.round, selection.instance)
     _print_place(reader, selection, console)
-    console.print(instance_table(attempts))
+    print_table(console, instance_table(attempts))
     for tried in attempts:
         text = f"demonstration {tried.number + 1} {headline(tried)}"
         console.print(Text(text), soft_wrap=True)

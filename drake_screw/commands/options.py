@@ -107,8 +107,8 @@ def chosen_scenario(
         )
     overrides = [*(changes or ()), *([] if seed is None else [f"seed={seed}"])]
     if demonstrations is not None:
-        folder = demonstrations.resolve()
-        overrides = ["teacher={kind: recorded}", f"teacher.folder={folder}", *overrides]
+        folder = str(demonstrations.resolve()).replace("'", "''")
+        overrides = ["teacher={kind: recorded}", f"teacher.folder='{folder}'", *overrides]
     loaded = load_scenario(scenario, overrides)
     _log.debug("scenario %s", loaded.source)
     return loaded if model is None else swap_model(loaded, model)

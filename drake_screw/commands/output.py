@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,8 @@ from rich.console import Console
 from rich.segment import Segments
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.files import writable, write_text, writing
+from drake_screw.files import write_text, writing
+from drake_screw.outputs import check_writable, writable
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -40,16 +42,15 @@ class Output:
         self.console = Console(stderr=json == STANDARD_OUTPUT)
         self._json = json
         if json is not None and json != STANDARD_OUTPUT:
-            check_writable(Path(json), JSON)
+            check_writable(Path(json), _remedy(JSON))
 
     def say(self, text: object) -> None:
         """Print words as they are, however long."""
         self.console.print(str(text), soft_wrap=True, markup=False, highlight=False)
 
     def print_table(self, table: Table) -> None:
-        """Print a table at its full width, wherever it goes."""
-        wide = self.console.render(table, self.console.options.update(width=WIDE))
-        self.console.print(Segments(wide), soft_wrap=True, end="")
+        """As `print_table`, where this says what it says."""
+        print_table(self.console, table)
 
     def present(self, result: object) -> None:
         """Print a result's words, and write it as JSON, if that is wanted.
@@ -83,22 +84,10 @@ class Output:
             write_text(Path(self._json), text)
 
 
-def check_writable(file: Path, option: str) -> None:
-    """Refuse a file that cannot be written, before the work is done.
-
-    Args:
-        file: that an option names.
-        option: its name, such as ``--html``.
-
-    Raises:
-        DrakeScrewError: there cannot be such a file.
-    """
-    if file.is_dir():
-        raise _unwritable(file, option, "it is a folder")
-    if not file.parent.is_dir():
-        raise _unwritable(file, option, f"there is no folder '{file.parent}'")
-    if not os.access(file.parent, os.W_OK):
-        raise _unwritable(file, option, "its folder is read-only")
+def print_table(console: Console, table: Table) -> None:
+    """Print a table at its full width, wherever it goes: no name in it is cut short."""
+    wide = console.render(table, console.options.update(width=WIDE))
+    console.print(Segments(wide), soft_wrap=True, end="")
 
 
 def check_page(html: Path | None, json: str | None) -> None:
@@ -111,17 +100,31 @@ def check_page(html: Path | None, json: str | None) -> None:
     Raises:
         DrakeScrewError: there cannot be such a file, or the two are one.
     """
-    if html is None:
-        return
-    check_writable(html, HTML)
-    if json is not None and Path(json).resolve() == html.resolve():
-        raise DrakeScrewError(f"{HTML} and {JSON} name one file", remedy="Give two.", file=html)
+    if html is not None:
+        check_writable(html, _remedy(HTML))
+        check_distinct({HTML: html, JSON: json})
+
+
+def check_distinct(files: Mapping[str, str | Path | None]) -> None:
+    """Refuse one file for two purposes.
+
+    Args:
+        files: by the options that name them; None where one is not given.
+
+    Raises:
+        DrakeScrewError: two are the same.
+    """
+    named: dict[str, str] = {}
+    for option, file in files.items():
+        if file is None or file == STANDARD_OUTPUT:
+            continue
+        other = named.setdefault(os.path.realpath(file), option)
+        if other != option:
+            raise DrakeScrewError(
+                f"{other} and {option} name one file", remedy="Give two.", file=file
+            )
 
 
 def _remedy(option: str) -> str:
     remedy = writable(option)
     return f"{remedy.removesuffix('.')}, or -." if option == JSON else remedy
-
-
-def _unwritable(file: Path, option: str, why: str) -> DrakeScrewError:
-    return DrakeScrewError(f"cannot be written: {why}", remedy=_remedy(option), file=file)

@@ -9,7 +9,7 @@ from rich.text import Text
 from drake_screw.acquisition import InstancesExecuted, RegionsEvaluated
 from drake_screw.commands.console import certificate_panel, detail, round_table
 from drake_screw.commands.countdown import Countdown, Pace
-from drake_screw.commands.output import Output
+from drake_screw.commands.output import Output, print_table
 from drake_screw.runs.selection import RegionRate, Selection
 from drake_screw.runs.selection_events import Tried
 from drake_screw.steps import Step
@@ -47,7 +47,7 @@ class SelectConsole:
                 self._shown.detail(self._attempt, detail(event, self._pace))
             case Tried():
                 self._console.print(Text(_tried(event)))
-                self._console.print(round_table(event.verdict, event.regions))
+                print_table(self._console, round_table(event.verdict, event.regions))
 
 
 def show_selection(found: Selection, budget: int, output: Output) -> None:
@@ -65,10 +65,10 @@ def show_selection(found: Selection, budget: int, output: Output) -> None:
         f"what each recording solves of {each:,} instances in each region"
         f"{without if found.chosen else ''}:"
     )
-    output.console.print(recordings_table(found))
+    output.print_table(recordings_table(found))
     if found.short:
         output.say("where another demonstration is needed, as even all recordings together fail:")
-        output.console.print(short_table(found.short))
+        output.print_table(short_table(found.short))
     for sentence in found.margin:
         output.say(sentence)
     output.console.print(certificate_panel(found.statement, certified=found.certified))

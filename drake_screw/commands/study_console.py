@@ -7,6 +7,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from drake_screw.commands.output import print_table
 from drake_screw.sharing import Workers
 from drake_screw.studies.findings import Findings, findings
 from drake_screw.studies.study import Study
@@ -42,7 +43,7 @@ def show_study(study: Study, console: Console, *, workers: Workers = None) -> Fi
             done = live.tasks[bars[run.K]].completed
             live.update(bars[run.K], mean=f"{total[run.K] / done:.2f} demonstrations")
     found = findings(study)
-    console.print(findings_table(found))
+    print_table(console, findings_table(found))
     console.print(Text(f"study directory: {found.directory}"), soft_wrap=True)
     return found
 

@@ -13,7 +13,8 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
-from drake_screw.files import cache_folder, write_text
+from drake_screw.cache_folder import cache_folder
+from drake_screw.files import write_text
 
 _SEAL = "# sha256 "
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize
 
 from drake_screw.robot.screw_chain import ScrewChain
 from drake_screw.screws import inverse
@@ -69,6 +68,8 @@ def _foot(S: Array, other: Array, near: Array) -> Array:
 
 def _extreme(chain: ScrewChain, p_WS: Array, p_EC: Array, sign: float) -> float:
     """The least of `sign` times the distance from shoulder to wrist."""
+    from scipy.optimize import minimize  # takes long to import
+
     lower = np.where(np.isfinite(chain.lower), chain.lower, -np.pi)
     upper = np.where(np.isfinite(chain.upper), chain.upper, np.pi)
     p_WC0 = chain.home[:3, :3] @ p_EC + chain.home[:3, 3]

@@ -17,6 +17,7 @@ from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
 from drake_screw.errors import ScenarioError, counted
 from drake_screw.execution.setting import Setting
 from drake_screw.files import WRITABLE_OUTPUT, write_bytes, write_files, writing
+from drake_screw.outputs import check_writable
 from drake_screw.plugins import find, names
 from drake_screw.robot import Arm
 from drake_screw.runs.run import open_run
@@ -97,6 +98,7 @@ def write_trajectory(
     with writing(output, WRITABLE_OUTPUT):
         content = _content(writer, best, setup, coordinates)
         if isinstance(content, bytes):
+            check_writable(output, WRITABLE_OUTPUT)
             write_bytes(output, content)
         else:
             write_files(output, content)

@@ -18,7 +18,8 @@ _SVG = {"svg.hashsalt": "drake_screw", "svg.fonttype": "path"}
 def save_figure(figure: Figure, stem: str | Path, *, svg: bool = False) -> tuple[Path, ...]:
     """Write a figure as ``<stem>.png``, and with `svg` as ``<stem>.svg``.
 
-    There is no date in them, no program and no random id.
+    An SVG that is there is drawn again in any case, so that the two show the same. There is no
+    date in them, no program and no random id.
 
     Returns:
         The files.
@@ -28,7 +29,7 @@ def save_figure(figure: Figure, stem: str | Path, *, svg: bool = False) -> tuple
     """
     png, drawing = Path(f"{stem}.png"), Path(f"{stem}.svg")
     write_bytes(png, png_bytes(figure))
-    if not svg:
+    if not (svg or drawing.exists()):
         return (png,)
     write_bytes(drawing, _svg(figure))
     return png, drawing

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from drake_screw.errors import DrakeScrewError
-from drake_screw.files import writable, write_text, writing
+from drake_screw.files import write_text, writing
+from drake_screw.outputs import writable
 from drake_screw.planning import Cause
 from drake_screw.runs.comparison import Comparison, last_rounds, without_sentences
 from drake_screw.runs.run import Run

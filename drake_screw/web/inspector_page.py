@@ -11,6 +11,7 @@ from pydrake.geometry import Meshcat, MeshcatParams
 
 from drake_screw.errors import DrakeScrewError
 from drake_screw.files import write_text, writing
+from drake_screw.outputs import check_writable
 from drake_screw.runs.reader import RunReader
 from drake_screw.visualization.lifetime import page_meshcat, scratch
 from drake_screw.visualization.meshcat_page import add_to_page, render
@@ -90,12 +91,16 @@ def save_page(reader: RunReader, selection: Selection, file: Path) -> Path:
             remedy=f"Name it {file.with_suffix('.html').name}; the numbers are written beside it.",
             file=file,
         )
+    numbers = [file.with_suffix(".csv"), file.with_suffix(".json")]
+    for written in (file, *numbers):
+        if written.parent.is_dir():
+            check_writable(written, "Give another --html.")
     texts = {}
     if selection.instance is not None:
         attempts = reader.attempts(selection.round, selection.instance)
         facts = {"round": selection.round + 1, "instance": selection.instance}
-        texts[file.with_suffix(".csv")] = attempts_csv(attempts)
-        texts[file.with_suffix(".json")] = attempts_json(attempts, facts, reader.setup.area)
+        texts[numbers[0]] = attempts_csv(attempts)
+        texts[numbers[1]] = attempts_json(attempts, facts, reader.setup.area)
     with scratch():
         texts[file] = _saved_page(reader, selection)
     for written, text in texts.items():

@@ -12,7 +12,8 @@ from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Look
 from drake_screw.demonstrations.look_summary import LookSummary
 from drake_screw.errors import DrakeScrewError
-from drake_screw.files import writable, write_text, writing
+from drake_screw.files import write_text, writing
+from drake_screw.outputs import writable
 from drake_screw.planning import Cause
 from drake_screw.runs.pictures import make_scene
 from drake_screw.steps import Step, Tell, to_nobody

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import re
 import shutil
 from pathlib import Path
@@ -174,15 +175,18 @@ def test_a_wrong_row_deep_in_a_table_ends_it_before_anything_is_planned(
     [
         ("none/out.csv", "none/out.csv: cannot be written: there is no folder 'none'"),
         ("out.parquet.gz", "out.parquet.gz: Parquet is compressed already"),
+        ("{places}", "{places}: --instances and --output name one file"),
+        ("pipe", "pipe: cannot be written: it is a device or a pipe, not a file"),
     ],
 )
 def test_where_no_table_can_be_is_said_first(command, library, places, output, message) -> None:
+    os.mkfifo("pipe")
     code, out, err = command(
         "evaluate", "pouring", "--demonstrations", library, "--instances", places,
-        "--output", output,
+        "--output", output.format(places=places),
     )  # fmt: skip
     assert (code, out) == (2, "")
-    assert err.startswith(f"error: {message}")
+    assert err.startswith(f"error: {message.format(places=places)}")
 
 
 @pytest.mark.slow

@@ -20,6 +20,13 @@ def test_other_keys_of_a_teacher_go_with_a_folder_of_demonstrations(tmp_path: Pa
     assert chosen_scenario("pouring", demonstrations=tmp_path).teacher.choose == "nearest"
 
 
+@pytest.mark.parametrize("name", ["demos #2", "my: demos", "Ann's", "{a}, [b]", "a\\nb", "é"])
+def test_a_folder_of_demonstrations_may_have_any_name(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).mkdir()
+    scenario = chosen_scenario("pouring", demonstrations=tmp_path / name)
+    assert scenario.teacher.folder == tmp_path / name
+
+
 def test_another_teacher_beside_a_folder_of_demonstrations_is_refused(tmp_path: Path) -> None:
     changes = ["teacher.kind=simulated", "teacher.motion=pouring"]
     with pytest.raises(ScenarioError, match=r"teacher\.folder: a simulated teacher has no folder"):

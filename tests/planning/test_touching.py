@@ -12,6 +12,7 @@ from rich.console import Console
 
 from drake_screw.assembly.why_not import why_not
 from drake_screw.commands.inspect_console import instance_table
+from drake_screw.commands.output import print_table
 from drake_screw.planning import BatchPlanner, Cause, Outcomes
 from drake_screw.planning.collisions import CollisionFreePlanner
 from drake_screw.planning.outcomes import one_outcome
@@ -103,8 +104,8 @@ def test_a_clearance_that_is_not_kept_is_no_touch(workcell: Workcell) -> None:
     plan = planner.planner.plan(lesson, CLOSED, START)
     tried = collided(attempt(workcell.arm, 0, lesson, CLOSED, plan), outcomes[0], workcell, 0.03)
     assert headline(tried).endswith(touch_words(PAIR, 0.03))
-    console = Console(width=160, record=True, file=StringIO())
-    console.print(instance_table([tried]))
+    console = Console(width=30, record=True, file=StringIO())
+    print_table(console, instance_table([tried]))
     assert "bodies" in console.export_text(clear=False)
     assert "p2_link, pole" in console.export_text()
 

@@ -275,6 +275,15 @@ def test_files_are_the_same_every_time(tmp_path, make_round, regions) -> None:
     assert not re.search(r"<dc:date>", svg)
 
 
+def test_an_svg_that_was_drawn_before_is_not_left_behind(tmp_path, make_round, regions) -> None:
+    save_heat_map(make_round(regions, FAILURES), regions, tmp_path / "a", dots=10, svg=True)
+    before = (tmp_path / "a.svg").read_bytes()
+    none = [0] * len(FAILURES)
+    written = save_heat_map(make_round(regions, none), regions, tmp_path / "a", dots=10)
+    assert [f.name for f in written] == ["a.png", "a.svg"]
+    assert (tmp_path / "a.svg").read_bytes() != before
+
+
 def test_pyplot_is_left_alone(tmp_path, make_round, regions) -> None:
     save_heat_map(make_round(regions, FAILURES), regions, tmp_path / "a", dots=10)
     assert pyplot.get_fignums() == []

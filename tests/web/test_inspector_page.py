@@ -389,9 +389,17 @@ def test_a_page_is_not_overwritten_by_its_numbers(reader, tmp_path) -> None:
         save_page(reader, selection, tmp_path / "file" / "page.html")
     assert [file.name for file in tmp_path.iterdir()] == ["file"]
     (tmp_path / "page.json").mkdir()
-    with pytest.raises(DrakeScrewError, match=r"page\.json: cannot be written: Is a directory"):
+    with pytest.raises(DrakeScrewError, match=r"page\.json: cannot be written: it is a folder"):
         save_page(reader, selection, tmp_path / "page.html")
     assert not (tmp_path / "page.html").exists()
+
+
+def test_a_run_is_not_overwritten_by_the_numbers_of_a_page(reader, copy) -> None:
+    before = (copy / "run.json").read_bytes()
+    with pytest.raises(DrakeScrewError, match=r"run\.json: cannot be written: a run or a study"):
+        save_page(reader, select(reader, 1), copy / "run.html")
+    assert (copy / "run.json").read_bytes() == before
+    assert not (copy / "run.html").exists()
 
 
 def test_whoever_stops_listening_at_the_end_leaves_a_finished_run(finished_run, tmp_path) -> None:

@@ -21,7 +21,7 @@ from types import ModuleType
 import llvmlite.binding  # type: ignore[import-untyped]
 import numba
 
-from drake_screw.files import cache_folder
+from drake_screw.cache_folder import cache_folder
 from drake_screw.planning import contract, outcomes
 from drake_screw.planning.compiled import (
     crossing,

@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from drake_screw.cache_folder import cache_folder
 from drake_screw.compile_cache import cached_njit
-from drake_screw.files import cache_folder
 from drake_screw.planning.compiled import functions
 from drake_screw.planning.compiled import inner as inner_module
 from drake_screw.planning.compiled.inner import inner
