@@ -204,7 +204,7 @@ def make_folder(path: Path, what: str, files: Mapping[str, str]) -> None:
 
     Raises:
         RunDirectoryError: there is something at that place already.
-        OSError: it cannot be written; what was written is removed.
+        OSError: it cannot be written; what was written is removed, as it is by an interruption.
     """
     *_, last = files
     begun = path / f".{last}.part"

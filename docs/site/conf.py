@@ -1,5 +1,6 @@
 """The documentation site, built by ``make docs``. Its source folder is the root of the checkout."""
 
+import posixpath
 import re
 import sys
 from importlib.metadata import version as version_of
@@ -19,6 +20,9 @@ project = "drake_screw"
 author = "the drake_screw contributors"
 version = release = version_of("drake-screw")
 
+NAMED_TYPES = ("Array", "ArrayLike", "InstanceLike", "PathLike", "PlaceLike")
+"""What signatures call by these names, and not by all that may stand for them."""
+
 extensions = [
     "myst_nb",
     "sphinx.ext.autodoc",
@@ -34,7 +38,8 @@ source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb", ".rst": "restructuredtex
 root_doc = "docs/index"
 
 html_theme = "furo"
-html_title = "drake_screw"
+pygments_dark_style = "monokai"  # the default underlines modules as if they were links
+html_title = f"drake_screw {version}"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_extra_path = ["root"]
@@ -56,7 +61,7 @@ default_role = "py:obj"
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
-autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "PathLike")}
+autodoc_type_aliases = {name: name for name in NAMED_TYPES}
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 napoleon_use_ivar = False
@@ -77,7 +82,9 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _keep_first_line, priority=400)
     app.connect("autodoc-process-signature", _short_types)
     app.connect("doctree-read", _look_up_nearby)
+    app.connect("doctree-resolved", _titles_for_files)
     app.connect("html-page-context", _without_way_back)
+    app.connect("html-page-context", _without_network)
 
 
 def _keep_first_line(
@@ -103,9 +110,28 @@ def _look_up_nearby(app: Sphinx, doctree: nodes.document) -> None:
             reference.attributes.pop("refspecific", None)
 
 
+def _titles_for_files(app: Sphinx, doctree: nodes.document, page: str) -> None:
+    """A link that a reader of the repository sees as `python.md` has the page's title here."""
+    for link in doctree.findall(nodes.reference):
+        address = posixpath.join(posixpath.dirname(page), link.get("refuri", "").partition("#")[0])
+        target = posixpath.splitext(posixpath.normpath(address))[0]
+        if re.fullmatch(r"[\w./]+\.md", link.astext()) and target in app.env.titles:
+            link[:] = [nodes.Text(app.env.titles[target].astext())]
+
+
 def _without_way_back(
     app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: nodes.document | None
 ) -> None:
     """Source pages lead back by one package's names for a module; others' would be dead links."""
     if page.startswith("_modules/"):
         context["body"] = re.sub('<a class="viewcode-back".*?</a>', "", context["body"])
+
+
+def _without_network(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: nodes.document | None
+) -> None:
+    """Matplotlib's player asks another site for the symbols on its buttons; site.css has some."""
+    if "body" in context:
+        context["body"] = re.sub(
+            r'<link rel="stylesheet"\s+href="https?://[^"]*">', "", context["body"]
+        )

@@ -11,9 +11,12 @@ import logging
 import sys
 from pathlib import Path
 
-from jupyter_cache import get_cache
-from jupyter_cache.cache.db import NbProjectRecord
-from jupyter_cache.executors import load_executor
+try:
+    from jupyter_cache import get_cache
+    from jupyter_cache.cache.db import NbProjectRecord
+    from jupyter_cache.executors import load_executor
+except ModuleNotFoundError as missing:
+    sys.exit(f"{missing.name} is not installed: make docs installs it, or pip install '.[docs]'")
 
 ROOT = Path(__file__).parents[2]
 TIMEOUT = 300  # s, of a cell

@@ -1,5 +1,6 @@
 """Sphinx math renderer ``mathml``: formulas as MathML, so that pages need no network for them."""
 
+import re
 from html import escape
 
 from docutils import nodes
@@ -23,6 +24,13 @@ def _block(translator: HTML5Translator, node: nodes.math_block) -> None:
 
 def converted(node: nodes.math | nodes.math_block, *, block: bool) -> str:
     """A formula as MathML; one that docutils cannot read is warned of, and shown as it is."""
+    bare = re.search(r"\\[dt]?frac(?![a-zA-Z])\s*[^{\s]+", node.astext())
+    if bare:
+        _log.warning(
+            "%s: docutils takes other arguments than TeX does; write \\frac{1}{2}",
+            bare[0],
+            location=node,
+        )
     try:
         return latex2mathml.tex2mathml(node.astext(), as_block=block)
     except MathError as error:

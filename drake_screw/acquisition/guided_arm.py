@@ -8,7 +8,6 @@ from pydrake.multibody.inverse_kinematics import (
     DifferentialInverseKinematicsParameters,
     DoDifferentialInverseKinematics,
 )
-from scipy.optimize import lsq_linear
 
 from drake_screw.robot import Arm
 from drake_screw.screws import inverse, log, shift
@@ -87,6 +86,8 @@ class GuidedArm:
 
     def _nearest_velocities(self, V_WE: Array, J_WE: Array) -> Array:
         """Joint velocities (n,) that come near V_WE (6,) in any direction, and near the middles."""
+        from scipy.optimize import lsq_linear  # takes long to import
+
         low = np.maximum(-self._speed, (self._lower - self.q) / self.period)
         high = np.minimum(self._speed, (self._upper - self.q) / self.period)
         share = max(

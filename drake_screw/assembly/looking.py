@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 
 from drake_screw.assembly.recorder import FOLDER
 from drake_screw.assembly.setup import Setup
@@ -89,7 +90,9 @@ def _read(setup: Setup, path: Path) -> tuple[tuple[Recording, ...], bool]:
     if format == FOLDER and path.is_file():
         raise RecordingError(
             "this is a file, and a recording is a folder",
-            remedy=f"Give the folder it stands in: {path.resolve().parent}",
+            remedy=f"Give the folder it stands in: {path.resolve().parent}"
+            if is_recording(path.parent)
+            else f"Bring it in first: drake-screw import {quote(str(path))} --output recordings",
             file=path,
         )
     if path.is_file() or is_recording(path):

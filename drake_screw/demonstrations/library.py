@@ -112,7 +112,8 @@ def read_library(
         raise RecordingError(
             f"no recordings here: no subfolder has a {JOINTS}",
             file=folder,
-            remedy="Each recording is a subfolder, such as demo_01.",
+            remedy="Each recording is a subfolder, such as demo_01; tables, logs and bags are "
+            "brought in with drake-screw import.",
         )
     return tuple(
         read_recording(

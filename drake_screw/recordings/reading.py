@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from shlex import quote
 
 from drake_screw.demonstrations.library import OBJECTS, is_recording
 from drake_screw.errors import RecordingError
@@ -155,6 +156,12 @@ def _files(source: Path, *, whole: bool = False) -> list[Path]:
         if item.suffix.lower() in SUFFIXES and item.name[0] not in "._" and item.is_file()
         and item.name != OBJECTS
     )  # fmt: skip
+    if not files and any(is_recording(item) for item in source.iterdir()):
+        raise RecordingError(
+            "these are recordings already; there is nothing to bring in",
+            remedy=f"Look at them: drake-screw look {quote(str(source))}",
+            file=source,
+        )
     if not files:
         raise RecordingError(
             "no recordings here",

@@ -19,8 +19,9 @@ _NAMES = (
     r"%?time$",
     r"t$",
     r"(time_?stamp|stamp)$",
-    r"%?(time|time_?stamp|stamp|clock|t)[ _.\[(/-]*"
-    r"(s|secs?|seconds?|ms|us|ns|\w{2,5}secs?)?[\])]?$",
+    r"%?(time|time_?stamp|stamp|clock|t)[ _.,\[(/-]*"
+    r"(in )?(s|secs?|seconds?|ms|us|ns|\w{2,5}secs?)?[\])]?$",
+    r"(secs?|seconds|m(illi)?secs?|millis|milliseconds)$",
     r".*time_?stamp.*|.*[._/]time$|.*elapsed.*|.*header\.stamp$",
     r"(frame|step|sample)(_?(index|number|id|nr))?$",
 )
@@ -51,8 +52,7 @@ def time_of(table: Table, mapping: Mapping) -> Time:
     if where is None:
         raise RecordingError(
             "no column of time",
-            remedy="Say time: NAME of its column, or the samples' rate: 100 (Hz), in "
-            f"recording.yaml. Columns found: {', '.join(table.names[:40])}",
+            remedy=f"{_how_to_say_it(table)} Columns found: {', '.join(table.names[:40])}",
             file=table.file,
             line=table.header,
         )
@@ -113,6 +113,24 @@ def _column(table: Table) -> str | tuple[str, str] | None:
             if re.match(pattern, name, re.IGNORECASE):
                 return name
     return None
+
+
+def _how_to_say_it(table: Table) -> str:
+    """What to write, and where, if there is no column of time; with the one that could be it."""
+    rate = "samples at a constant rate need --rate HZ instead."
+    rising = [name for name in table.numeric if _rises(table.columns[name])]
+    if len(rising) == 1:
+        return (
+            f"Column '{rising[0]}' goes up from row to row: if it is the time, write the line "
+            f"'time: {rising[0]}' into a file recording.yaml beside the data; {rate}"
+        )
+    return f"Write the line 'time: NAME' into a file recording.yaml beside the data; {rate}"
+
+
+def _rises(column: Array) -> bool:
+    """Whether a column (m,) never falls, and is another in most rows than in the row before."""
+    steps = np.diff(column)
+    return bool(len(steps) and (steps >= 0.0).all() and (steps > 0.0).mean() > 0.5)
 
 
 def rate_in_words(t: Array) -> str:

@@ -35,7 +35,7 @@ from drake_screw.visualization.screw_drawing import AXIS
 
 
 def write_look_page(looks: Looks, file: Path, tell: Tell = to_nobody) -> Path:
-    """Write a page with a section for each recording; of a single one, with the scene in 3-D.
+    """Write a page with a section for each recording; of the only one, with the scene in 3-D.
 
     Args:
         looks: what was looked at.
@@ -60,7 +60,7 @@ def look_page(looks: Looks, tell: Tell = to_nobody) -> str:
     sections = []
     for number, (look, found) in enumerate(zip(looks.looks, summary.recordings, strict=True)):
         tell(Step("drawing recordings", number, len(looks.looks)))
-        sections.append(_section(setup, look, found, scene=not looks.library))
+        sections.append(_section(setup, look, found, scene=len(looks.looks) == 1))
     page = render(
         "drake_screw.web",
         "look.html.j2",

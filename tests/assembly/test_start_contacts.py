@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from drake_screw import Setup, load_scenario
 from drake_screw.acquisition import Finished, Suggestion
@@ -107,7 +108,7 @@ def test_what_keeps_the_teacher_from_it_is_told_everywhere(tmp_path: Path) -> No
     assert said.search(end.reason)
     assert (tmp_path / "run" / "meshcat.html").stat().st_size > 0
     with pytest.raises(RunDirectoryError, match="ended before its first round") as caught:
-        inspect_run(tmp_path / "run", None, html=tmp_path / "page.html")
+        inspect_run(tmp_path / "run", Console(), html=tmp_path / "page.html")
     assert said.search(caught.value.message)
     assert "Wait" not in str(caught.value)
 

@@ -74,6 +74,29 @@ def test_wrong_input(command: Command, log: Path, words: list[str], message: str
     assert not Path("new").exists()
 
 
+def test_a_column_that_may_be_the_time_is_named_and_the_line_that_says_so_works(
+    command: Command, log: Path
+) -> None:
+    rows = log.read_text().splitlines()
+    log.write_text("\n".join([rows[0].replace("t_ms", "Zeit (ms)"), *rows[1:]]))
+    code, _, err = command("import", log, "--dry-run")
+    assert code == 2
+    assert "no column of time" in err
+    assert "the line 'time: Zeit (ms)' into a file recording.yaml beside the data" in err
+    assert "--rate HZ" in err
+    (log.parent / "recording.yaml").write_text("time: Zeit (ms)\n")
+    code, out, _ = command("import", log, "--dry-run")
+    assert code == 0
+    assert "column 'Zeit (ms)' in ms (by its name)" in out
+
+
+def test_recordings_are_not_brought_in_again_but_looked_at(command: Command, library: Path) -> None:
+    code, _, err = command("import", library, "--dry-run")
+    assert code == 2
+    assert "these are recordings already" in err
+    assert f"drake-screw look {library}" in " ".join(err.split())
+
+
 def test_a_mapping_beside_the_data_is_read_and_checked(command: Command, log: Path) -> None:
     beside = log.parent / "recording.yaml"
     beside.write_text("objects: {bowl: [0.8, 0.1]}\nangels: rad\n")

@@ -82,6 +82,15 @@ def test_a_library_is_a_table_with_what_is_refused(command: Command, spoilt: Pat
     assert all(b"<svg" in base64.b64decode(picture) for picture in pictures)
 
 
+def test_the_page_of_a_folder_with_one_recording_has_the_scene(
+    command: Command, library: Path
+) -> None:
+    shutil.copytree(library / "demo_01", "mine/demo_01")
+    code, _, _ = command("look", "mine", "--html", "page.html", *FAITHFUL)
+    assert code == 0
+    assert len(re.findall(r'srcdoc="', Path("page.html").read_text())) == 1
+
+
 def test_the_page_of_one_recording_has_the_scene(command: Command, library: Path) -> None:
     code, out, _ = command("look", library / "demo_01", "--html", "page.html")
     assert (code, "written: page.html" in out) == (0, True)
@@ -145,7 +154,8 @@ def test_recordings_of_another_robot(command: Command, library: Path) -> None:
     [
         (["nowhere"], "nowhere: no such recording or library"),
         (["."], "no recordings here"),
-        (["{library}/demo_01/joint_angles.csv"], "a recording is a folder"),
+        (["{library}/demo_01/joint_angles.csv"], "Give the folder it stands in: "),
+        (["{broken}/log.csv"], "library/log.csv --output recordings"),
         (["{library}", "--scenario", "puring"], "Did you mean 'pouring'"),
         (["{library}", "--set", "segmentation.spacin=1"], "Did you mean 'spacing'"),
         (["{library}", "--html", "no/page.html"], "there is no folder 'no'"),
@@ -169,6 +179,7 @@ def test_wrong_input(
     lines = file.read_text().splitlines()
     lines[8] = re.sub(r",[^,]*", ",nan", lines[8], count=1)
     file.write_text("\n".join(lines) + "\n")
+    (broken / "log.csv").write_text("t,q0\n")
     code, out, err = command("look", *(a.format(library=library, broken=broken) for a in args))
     assert (code, out) == (2, "")
     assert expected in " ".join(err.split())

@@ -64,7 +64,6 @@ from drake_screw.sharing import Crew
 
 def twice():
     os.kill(os.getpid(), signal.SIGINT)
-    time.sleep(0.2)
     os.kill(os.getpid(), signal.SIGTERM)
 
 if __name__ == "__main__":
@@ -105,7 +104,7 @@ def wait(tool: dict, seconds: float) -> None:
 
 
 def test_nor_is_a_word_said_of_what_its_processes_shared(tmp_path: Path) -> None:
-    """While it waits for them; what it leaves is removed by a process that outlives it."""
+    """Both signals come at once; what it leaves is removed by a process that outlives it."""
     done = shared(tmp_path, SHARED)
     assert (done.returncode, done.stdout, done.stderr) == (INTERRUPTED, "", "")
 

@@ -6,6 +6,8 @@ import errno
 import os
 import re
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -206,13 +208,14 @@ def test_an_output_that_is_taken_is_refused(command: Command, certified: Path) -
     assert list(Path().iterdir()) == []
 
 
-def test_a_folder_that_was_removed_around_one_is_told(command, tmp_path, monkeypatch) -> None:
+def test_a_folder_that_was_removed_around_one_is_told(tmp_path: Path) -> None:
     (tmp_path / "gone").mkdir()
-    monkeypatch.chdir(tmp_path / "gone")
-    (tmp_path / "gone").rmdir()
-    code, out, err = command("check", "pouring")
-    assert (code, out) == (2, "")
-    assert err == (
+    command = f"rmdir ../gone; exec '{sys.executable}' -m drake_screw check pouring"
+    done = subprocess.run(
+        ["sh", "-c", command], cwd=tmp_path / "gone", capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == (
         "error: the folder that you are in does not exist any more\n"
         "  Change to one that does: cd FOLDER\n"
     )

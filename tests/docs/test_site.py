@@ -111,6 +111,21 @@ def test_what_cannot_be_drawn_of_a_formula_is_a_warning_and_shown_as_it_is(
     assert "nosuchthing" in caplog.text
 
 
+@pytest.mark.parametrize(
+    ("formula", "warned"),
+    [(r"\tfrac12 p", True), (r"\frac1{k + 1}", True), (r"\frac{1}{2} \fraction", False)],
+)
+def test_a_fraction_without_braces_is_a_warning_as_it_would_be_another_one(
+    formula: str, warned: bool, caplog: pytest.LogCaptureFixture
+) -> None:
+    pytest.importorskip("sphinx")
+    from docutils import nodes
+
+    with caplog.at_level("WARNING"):
+        load("mathml").converted(nodes.math("", formula), block=False)
+    assert ("write \\frac{1}{2}" in caplog.text) == warned
+
+
 @pytest.fixture
 def execute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """`docs/site/execute.py` on a checkout of one module and one notebook, which raises."""
@@ -125,6 +140,12 @@ def execute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     cells = [nbformat.v4.new_code_cell("1 / 0")]
     nbformat.write(nbformat.v4.new_notebook(cells=cells), tmp_path / "tutorials" / "bad.ipynb")
     return module
+
+
+def test_without_the_extra_docs_its_name_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "jupyter_cache", None)
+    with pytest.raises(SystemExit, match=r"jupyter_cache is not installed.*'\.\[docs\]'"):
+        load("execute")
 
 
 def test_outputs_are_kept_by_what_they_were_made_with(execute: ModuleType) -> None:
