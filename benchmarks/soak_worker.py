@@ -67,7 +67,7 @@ def _prepare() -> None:
     from drake_screw.assembly import preview
 
     cli.app = get_command(cli.app)  # type: ignore[assignment]
-    preview._plans_per_second = lambda setup: (None, None)
+    preview._plans_per_second = lambda setup, tell: (None, None)
 
 
 def _judged(kind: str, index: int, seed: int, originals: Path) -> dict[str, Any]:
