@@ -20,12 +20,13 @@ def writable(option: str) -> str:
     return f"Give {option} a file in a folder that exists and that you may write to."
 
 
-def check_writable(file: Path, remedy: str) -> None:
+def check_writable(file: Path, remedy: str, kind: type[DrakeScrewError] = DrakeScrewError) -> None:
     """Refuse a file for a result that cannot be written, before the work is done.
 
     Args:
         file: that a user has named.
         remedy: what the user can do about it.
+        kind: of the error.
 
     Raises:
         DrakeScrewError: there cannot be such a file, or a run or a study could not do without
@@ -48,4 +49,4 @@ def check_writable(file: Path, remedy: str) -> None:
         why = "its folder is read-only"
     else:
         return
-    raise DrakeScrewError(f"cannot be written: {why}", remedy=remedy, file=file)
+    raise kind(f"cannot be written: {why}", remedy=remedy, file=file)

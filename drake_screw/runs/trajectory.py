@@ -14,7 +14,7 @@ from drake_screw.assembly.placing import InstanceLike, placed
 from drake_screw.assembly.ranked_plans import RankedPlan
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations.baxter_csv import COLUMNS as BAXTER_COLUMNS
-from drake_screw.errors import ScenarioError, counted
+from drake_screw.errors import RunDirectoryError, ScenarioError, counted
 from drake_screw.execution.setting import Setting
 from drake_screw.files import WRITABLE_OUTPUT, write_bytes, write_files, writing
 from drake_screw.outputs import check_writable
@@ -98,7 +98,7 @@ def write_trajectory(
     with writing(output, WRITABLE_OUTPUT):
         content = _content(writer, best, setup, coordinates)
         if isinstance(content, bytes):
-            check_writable(output, WRITABLE_OUTPUT)
+            check_writable(output, WRITABLE_OUTPUT, RunDirectoryError)
             write_bytes(output, content)
         else:
             write_files(output, content)

@@ -93,9 +93,9 @@ def _scene(setup: Setup, look: Look) -> str:
         make_scene(setup, meshcat)
         draw_look(meshcat, look, setup.objects)
         if look.recording.robot is None and look.units:
-            joints = [one.arm.joint_names for one in setup.arms]
-            led = setup.workcells[joints.index(look.recording.joint_names)]
-            animate(meshcat, Linkage(led), look.t, look.q)
+            for one in setup.arms:
+                if one.arm.joint_names == look.recording.joint_names:
+                    animate(meshcat, Linkage(one.workcell), look.t, look.q)
         return str(meshcat.StaticHtml())
 
 
