@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from functools import lru_cache
 from pathlib import Path
@@ -30,6 +31,18 @@ def cache_folder() -> Path:
         except OSError:
             continue
     return _temporary()
+
+
+def discard(path: Path) -> None:
+    """Remove what is kept at a path, if anything is; a folder with all that is in it.
+
+    Raises:
+        OSError: it cannot be removed.
+    """
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
 
 
 @lru_cache

@@ -11,9 +11,8 @@ import hashlib
 import logging
 import os
 import pickle
-import shutil
 from collections.abc import Callable
-from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numba
@@ -21,6 +20,9 @@ from numba import njit
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
+
+from drake_screw.cache_folder import discard
+from drake_screw.said_once import warn_once
 
 _log = logging.getLogger(__name__)
 
@@ -40,7 +42,9 @@ def cached_njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
             compiled._cache = _CheckedCache(function)
         except RuntimeError as error:
             _log.debug("%s", error)
-            _tell("no folder was found that compiled code can be kept in; set XDG_CACHE_HOME")
+            warn_once(
+                _log, "no folder was found that compiled code can be kept in; set XDG_CACHE_HOME"
+            )
         return compiled
 
     return decorate
@@ -66,7 +70,8 @@ class _CheckedCache(FunctionCache):
             super().save_overload(sig, data)
         except OSError as error:
             why = error.strerror or error
-            _tell(f"{self.cache_path}: compiled code cannot be kept: {why}; it will be made again")
+            line = f"{self.cache_path}: compiled code cannot be kept: {why}; it will be made again"
+            warn_once(_log, line)
 
 
 class _CheckedFiles(IndexDataCacheFile):
@@ -96,7 +101,8 @@ class _CheckedFiles(IndexDataCacheFile):
 
     def _write(self, path: str, content: Any) -> None:
         data = dumps(content)
-        _remove(path, folder_only=True)
+        if os.path.isdir(path):
+            _remove(path)
         with self._open_for_write(path) as file:
             file.write(hashlib.sha256(data).digest() + data)
 
@@ -113,21 +119,13 @@ def _read(path: str) -> Any:
         return None
     except (OSError, pickle.UnpicklingError, AttributeError, ImportError) as error:
         why = getattr(error, "strerror", None) or str(error)
-    _tell(f"{path}: {why}; the code is compiled again")
+    warn_once(_log, f"{path}: {why}; the code is compiled again")
     _remove(path)
     return None
 
 
-def _remove(path: str, *, folder_only: bool = False) -> None:
+def _remove(path: str) -> None:
     try:
-        if os.path.isdir(path):
-            shutil.rmtree(path)
-        elif not folder_only:
-            os.unlink(path)
+        discard(Path(path))
     except OSError as error:
         _log.debug("%s cannot be removed: %s", path, error)
-
-
-@lru_cache
-def _tell(line: str) -> None:
-    _log.warning("%s", line)

@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from drake_screw import compile_cache
+from drake_screw.said_once import warn_once
 
 SOURCE = """
 from drake_screw.compile_cache import cached_njit
@@ -27,7 +27,7 @@ def twice(x):
 
 @pytest.fixture(autouse=True)
 def told_anew() -> None:
-    compile_cache._tell.cache_clear()
+    warn_once.cache_clear()
 
 
 def twice(folder: Path) -> Any:
@@ -76,7 +76,7 @@ def test_damage_is_noticed_told_in_a_line_and_mended(tmp_path, caplog) -> None:
     harms: list[Callable[[Path], None]] = [truncate, garble, empty, folder_instead]
     for harm, file in itertools.product(harms, (index, code)):
         harm(file)
-        compile_cache._tell.cache_clear()
+        warn_once.cache_clear()
         caplog.clear()
         with caplog.at_level(logging.WARNING, "drake_screw"):
             assert hits(twice(tmp_path)) == 0, (harm, file)

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import hashlib
 import logging
-import shutil
 from collections.abc import Callable
-from functools import lru_cache
 from pathlib import Path
 
-from drake_screw.cache_folder import cache_folder
+from drake_screw.cache_folder import cache_folder, discard
 from drake_screw.files import write_text
+from drake_screw.said_once import warn_once
 
 _SEAL = "# sha256 "
 
@@ -31,7 +30,7 @@ def kept_folder(*names: str) -> Path:
     for name in names:
         folder = folder / name
         if not folder.is_dir():
-            _remove(folder)
+            discard(folder)
             folder.mkdir(exist_ok=True)
     return folder
 
@@ -77,18 +76,6 @@ def _is(file: Path, right: Callable[[bytes], bool]) -> bool:
         return False
     except IsADirectoryError:
         pass
-    _tell(f"{file}: it is damaged, and made again")
-    _remove(file)
+    warn_once(_log, f"{file}: it is damaged, and made again")
+    discard(file)
     return False
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)
-
-
-@lru_cache
-def _tell(line: str) -> None:
-    _log.warning("%s", line)

@@ -7,7 +7,6 @@ import logging
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 from pydrake.multibody.parsing import PackageMap
@@ -25,6 +24,7 @@ from drake_screw.robot.model_text import check_collision_shapes
 from drake_screw.robot.model_xml import model_xml, parse_model
 from drake_screw.robot.packages import ModelPlace
 from drake_screw.robot.xacro_text import SUFFIX, expand
+from drake_screw.said_once import warn_once
 
 KINDS = {"robot": ".urdf", "sdf": ".sdf"}
 """Suffixes that Drake knows models by, by their root element."""
@@ -169,21 +169,16 @@ def _mend(root: ET.Element, place: ModelPlace, *, shapes: bool) -> bool:
         elif mimic is not None and joints.get(mimic.get("joint")) in (None, "fixed"):
             joint.remove(mimic)
             changed = True
-            _tell(
+            warn_once(
+                _log,
                 f"{place.file}: joint '{joint.get('name')}' is to follow '{mimic.get('joint')}', "
-                "which does not move; it is a joint of its own now"
+                "which does not move; it is a joint of its own now",
             )
     for transmission in root.findall("transmission"):
         if any(joint.get("name") not in joints for joint in transmission.iterfind("joint")):
             root.remove(transmission)
             changed = True
     return changed
-
-
-@lru_cache
-def _tell(warning: str) -> None:
-    """Once, however often the model is read."""
-    _log.warning(warning)
 
 
 def _has_file(place: ModelPlace) -> Callable[[str], bool]:

@@ -19,12 +19,12 @@ from drake_screw.robot import (
     RobotConfig,
     Workcell,
     build_workcell,
-    kept_files,
 )
 from drake_screw.robot.mesh_files import MOST_FACES, hull_file, look_file
 from drake_screw.robot.model_file import ModelFile, model_file
 from drake_screw.robot.model_meshes import LARGE
 from drake_screw.robot.packages import ModelPlace
+from drake_screw.said_once import warn_once
 from drake_screw.typing import Array
 from tests.robot.small_arms import PLANAR, sdf
 
@@ -135,7 +135,7 @@ def test_a_damaged_file_in_the_cache_is_noticed_told_and_made_again(
         assert read(arm(tmp_path, "small.dae", look="small.dae")).read == model
         assert file.read_bytes() == right
         assert caplog.messages == [f"{file}: it is damaged, and made again"]
-        kept_files._tell.cache_clear()
+        warn_once.cache_clear()
 
 
 def test_a_file_where_the_cache_has_a_folder_makes_way(tmp_path: Path) -> None:
