@@ -110,6 +110,11 @@ class Verdict:
         )
 
     @property
+    def weakest(self) -> int | None:
+        """The weakest region; None where no sample fails, as none is weaker then."""
+        return self.region if self.failures.any() else None
+
+    @property
     def total_samples(self) -> int:
         """Samples drawn in all regions together."""
         return int(self.samples.sum())

@@ -121,7 +121,7 @@ def round_table(verdict: Verdict, regions: Regions) -> Table:
         table.add_column(name, justify="right", no_wrap=True)
     table.add_column("", no_wrap=True)
     for j in shown.tolist():
-        weakest = j == verdict.region and verdict.failures.any()
+        weakest = j == verdict.weakest
         table.add_row(
             str(j),
             regions.name(j),

@@ -15,7 +15,6 @@ from drake_screw.acquisition import (
 )
 from drake_screw.errors import counted
 from drake_screw.tasks import Regions
-from drake_screw.visualization.rounds import weakest
 
 
 def describe(event: Event, regions: Regions) -> str:
@@ -28,7 +27,7 @@ def describe(event: Event, regions: Regions) -> str:
         case InstancesExecuted():
             return f"round {event.round + 1}: executed {event.done:,} of {event.total:,}"
         case RoundFinished():
-            verdict, region = event.verdict, weakest(event)
+            verdict, region = event.verdict, event.verdict.weakest
             worst = "none fails"
             if region is not None:
                 worst = f"weakest region {region} ({event.regions.name(region)}) fails "

@@ -33,7 +33,7 @@ from drake_screw.visualization.palette import (
     failure_map,
     failure_norm,
 )
-from drake_screw.visualization.rounds import Round, Sample, sample, weakest
+from drake_screw.visualization.rounds import Round, Sample, sample
 
 MOST_DOTS = 1500
 SHAPES = {
@@ -117,7 +117,7 @@ def legend_handles(
         for cause, name in OUTCOME_NAMES.items()
         if shown.count(cause)
     ]
-    if weakest(event) is not None:
+    if event.verdict.weakest is not None:
         handles.append(Patch(fill=False, edgecolor=INK, linewidth=2.2, label="weakest region"))
     if event.demonstrations:
         handles.append(Line2D([], [], **_marker("o", PAPER, 10.0, INK), label="demonstration"))
@@ -161,7 +161,7 @@ def _draw_cells(ax: Axes, drawn: Cells, event: Round, mean: bool) -> None:
         box = {"xy": (y0, x0), "width": y1 - y0, "height": x1 - x0}
         color = tuple(failure_color(estimates[cell]))
         ax.add_patch(Rectangle(**box, facecolor=color, edgecolor=GRID, gid=f"cell{cell}"))
-    region = weakest(event)
+    region = event.verdict.weakest
     if region is None:
         return
     (x0, y0), (x1, y1) = drawn.outlines[region]

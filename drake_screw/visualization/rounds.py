@@ -107,14 +107,9 @@ def headline(event: Round) -> str:
     return f"round {event.round + 1}, {count} demonstration{'' if count == 1 else 's'}: {verdict}"
 
 
-def weakest(event: Round) -> int | None:
-    """The weakest region of a round; None where no instance fails, as none is weaker then."""
-    return event.verdict.region if event.verdict.failures.any() else None
-
-
 def details(event: Round, regions: Regions) -> str:
     """The weakest region of a round and the strategy's reason."""
-    region = weakest(event)
+    region = event.verdict.weakest
     if region is None:
         return f"no instance fails; {event.verdict.reason}"
     return f"weakest region: {regions.name(region)}; {event.verdict.reason}"

@@ -37,7 +37,7 @@ from drake_screw.visualization.palette import (
     failure_color,
     linear_from_srgb,
 )
-from drake_screw.visualization.rounds import Round, Sample, sample, weakest
+from drake_screw.visualization.rounds import Round, Sample, sample
 from drake_screw.visualization.workcell_drawing import draw_workcell
 
 MOST_DOTS = 6_000
@@ -201,7 +201,7 @@ class Scene:
 
     def _draw_regions(self, path: str, drawn: Cells, event: Round) -> None:
         z = self._draw_tiles(f"{path}/regions", drawn, event.verdict.estimates)
-        region = weakest(event)
+        region = event.verdict.weakest
         if region is None:
             return
         lower, upper = drawn.outlines[region]

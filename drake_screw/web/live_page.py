@@ -38,7 +38,7 @@ from drake_screw.visualization.palette import (
     UNKNOWN,
     failure_scale,
 )
-from drake_screw.visualization.rounds import details, weakest
+from drake_screw.visualization.rounds import details
 from drake_screw.web.area_map import map_words, work_area_map
 from drake_screw.web.server import PanelServer
 
@@ -184,7 +184,7 @@ class LivePage:
     def _finish_round(self, event: RoundFinished) -> None:
         shown = self._scene.show_round(event, event.regions)
         verdict, number = event.verdict, event.round + 1
-        region = weakest(event)
+        region = event.verdict.weakest
         worst = "none fails"
         if region is not None:
             worst = f"weakest: region {region}, {verdict.estimates[region]:.2%} fail "

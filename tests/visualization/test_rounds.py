@@ -7,7 +7,7 @@ from drake_screw.bandits import Cell
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.tasks import BoxRegions, ObjectArea, WorkArea, box_regions, grid_regions
 from drake_screw.visualization.cells import cells
-from drake_screw.visualization.rounds import bounds_over, details, headline, sample, weakest
+from drake_screw.visualization.rounds import bounds_over, details, headline, sample
 from tests.visualization.conftest import BOWL
 
 
@@ -128,9 +128,9 @@ def test_a_round_in_words(make_round, regions) -> None:
 
 
 def test_where_nothing_fails_no_region_is_the_weakest(make_round, regions) -> None:
-    assert weakest(make_round(regions, [0, 0, 7, 0, 0, 0])) == 2
+    assert make_round(regions, [0, 0, 7, 0, 0, 0]).verdict.weakest == 2
     sure = make_round(regions, [0] * 6)
-    assert weakest(sure) is None
+    assert sure.verdict.weakest is None
     assert details(sure, regions).startswith("no instance fails; ")
 
 
