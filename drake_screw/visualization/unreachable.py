@@ -8,9 +8,10 @@ import numpy as np
 
 from drake_screw.planning import Plan
 from drake_screw.planning.contract import RATE_LIMIT, motion_size
+from drake_screw.planning.roll import along_roll_free, free_frame, turned_apart
 from drake_screw.robot import Arm
 from drake_screw.robot.wrist import Wrist
-from drake_screw.screws import inverse, log, rotation_angle, shift, translation_distance
+from drake_screw.screws import inverse, log, shift, translation_distance
 from drake_screw.typing import Array
 
 END_OF_REACH = 1.0 / RATE_LIMIT
@@ -129,16 +130,12 @@ def explain(arm: Arm, plan: Plan, starts: Array) -> Unreachable:
         gain[i] = motion_size(P.T @ V) / max(float(np.linalg.norm(v)), 1e-12)
         lacking = float(motion_size(P.T @ (V - P @ J @ v)) / motion_size(P.T @ V))
     G, last, wrist = plan.guides[int(plan.outcome.segment)], X_WE[-1], arm.wrist
-    turn = float(rotation_angle(last, G))
-    if plan.free_axis is not None:
-        a, b = last[:3, :3] @ plan.free_axis, G[:3, :3] @ plan.free_axis
-        turn = float(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b))
     return Unreachable(
         singular,
         gain,
         lacking,
         float(translation_distance(last, G)),
-        turn,
+        float(turned_apart(last, G, plan.free_axis)),
         wrist,
         np.empty(0) if wrist is None else wrist.distance(X_WE),
         np.nan if wrist is None else _needed(wrist, G, plan.free_axis),
@@ -148,12 +145,7 @@ def explain(arm: Arm, plan: Plan, starts: Array) -> Unreachable:
 
 def _followed(X_WE: Array, free_axis: Array | None) -> Array:
     """(6, 6) or, without turns about the free axis, (5, 6): takes twists to what is followed."""
-    if free_axis is None:
-        return np.eye(6)
-    across = np.linalg.svd((X_WE[:3, :3] @ free_axis)[None])[2][1:]
-    P = np.zeros((5, 6))
-    P[:2, :3], P[2:, 3:] = across, np.eye(3)
-    return P
+    return np.eye(6) if free_axis is None else along_roll_free(X_WE @ free_frame(free_axis))
 
 
 def _needed(wrist: Wrist, G: Array, free_axis: Array | None) -> float:
