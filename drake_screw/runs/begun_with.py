@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from drake_screw.assembly.setup import Setup
@@ -9,19 +10,22 @@ from drake_screw.errors import RunDirectoryError
 from drake_screw.files import file_hash
 from drake_screw.runs.directory import RunDirectory
 
+RECORDED_ON = "recorded_on"
+"""Names the model of the robot that recordings were made on, where that is another one."""
+
 
 def model_files(setup: Setup) -> dict[str, Path]:
     """The models and meshes that a run depends on."""
     other = setup.recorder.model_file
     models = {"model": setup.workcell.model_file}
-    return models | ({} if other is None else {"recorded_on": other}) | setup.srdf | setup.meshes
+    return models | ({} if other is None else {RECORDED_ON: other}) | setup.srdf | setup.meshes
 
 
 def model_hashes(setup: Setup) -> dict[str, str]:
     """Of what was read of each of `model_files`: of a model in xacro, what it stands for."""
     other = setup.recorder.model
     found = {"model": setup.workcell.model.hash}
-    found |= {} if other is None else {"recorded_on": other.hash}
+    found |= {} if other is None else {RECORDED_ON: other.hash}
     others = setup.srdf | setup.meshes
     return found | {name: file_hash(file) for name, file in others.items()}
 
@@ -32,16 +36,31 @@ def check_models(setup: Setup, directory: RunDirectory) -> None:
     Raises:
         RunDirectoryError: one has changed.
     """
-    now = model_hashes(setup)
-    for name, file in model_files(setup).items():
-        if now[name] != directory.record.hashes.get(name):
+    changed = changed_model(setup, model_hashes(setup), directory.record.hashes)
+    if changed is not None:
+        raise RunDirectoryError(
+            f"{changed} has changed since this run",
+            remedy="Put the file back as it was, or run the scenario again.",
+            file=directory.path,
+        )
+
+
+def changed_model(
+    setup: Setup, found: Mapping[str, str], known: Mapping[str, str | None]
+) -> str | None:
+    """The first of models and meshes that is not what it was, in words; None if all are.
+
+    Args:
+        found: hashes of those that count, as `model_hashes` has them.
+        known: hashes as they were.
+    """
+    files = model_files(setup)
+    for name, now in found.items():
+        if now != known.get(name):
             what = "mesh" if name in setup.meshes else "robot model"
             what = "SRDF" if name in setup.srdf else what
-            raise RunDirectoryError(
-                f"the {what} {file} has changed since this run",
-                remedy="Put the file back as it was, or run the scenario again.",
-                file=directory.path,
-            )
+            return f"the {what} {files[name]}"
+    return None
 
 
 def check_parts(setup: Setup, directory: RunDirectory) -> None:

@@ -26,12 +26,7 @@ from drake_screw.demonstrations import Demonstration
 from drake_screw.errors import RunDirectoryError, ScenarioError
 from drake_screw.files import now
 from drake_screw.holding import holding
-from drake_screw.runs.begun_with import (
-    check_models,
-    check_parts,
-    check_ways_around,
-    model_hashes,
-)
+from drake_screw.runs.begun_with import check_models, check_parts, check_ways_around, model_hashes
 from drake_screw.runs.certificate import Certificate
 from drake_screw.runs.certifying import certificate
 from drake_screw.runs.codec import FORMAT

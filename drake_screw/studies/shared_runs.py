@@ -10,10 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from drake_screw.acquisition import RecordedTeacher
-from drake_screw.assembly.planning_setup import PlanningSetup
 from drake_screw.assembly.setup import Setup
 from drake_screw.errors import RunDirectoryError
-from drake_screw.files import file_hash
+from drake_screw.runs.begun_with import RECORDED_ON, changed_model, model_hashes
 from drake_screw.scenario.schema import Scenario
 from drake_screw.sharing import SharingError, Workers, share_out
 from drake_screw.studies.experiment import Experiment, StudyRun
@@ -57,13 +56,12 @@ def shared_runs(
         ) from error
 
 
-def hashes(setup: PlanningSetup) -> dict[str, str]:
+def hashes(setup: Setup) -> dict[str, str]:
     """Of what was read of the robot's model, and of the meshes around it."""
-    others = {name: file_hash(file) for name, file in (setup.srdf | setup.meshes).items()}
-    return {"model": setup.workcell.model.hash} | others
+    return {name: h for name, h in model_hashes(setup).items() if name != RECORDED_ON}
 
 
-def check_unchanged(setup: PlanningSetup, known: Mapping[str, str], study: Path | None) -> None:
+def check_unchanged(setup: Setup, known: Mapping[str, str], study: Path | None) -> None:
     """Check that the robot is the one that a study began with.
 
     Args:
@@ -73,17 +71,13 @@ def check_unchanged(setup: PlanningSetup, known: Mapping[str, str], study: Path 
     Raises:
         RunDirectoryError: a model or mesh is another one.
     """
-    found = hashes(setup)
-    files = {"model": setup.workcell.model_file} | setup.srdf | setup.meshes
-    for name, used in files.items():
-        if found[name] != known.get(name):
-            what = "mesh" if name in setup.meshes else "robot model"
-            what = "SRDF" if name in setup.srdf else what
-            raise RunDirectoryError(
-                f"the {what} {used} has changed since this study began",
-                remedy="Put the file back as it was, or begin the study again.",
-                file=study,
-            )
+    changed = changed_model(setup, hashes(setup), known)
+    if changed is not None:
+        raise RunDirectoryError(
+            f"{changed} has changed since this study began",
+            remedy="Put the file back as it was, or begin the study again.",
+            file=study,
+        )
 
 
 def _recordings(setup: Setup) -> dict[str, str]:
