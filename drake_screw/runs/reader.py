@@ -20,6 +20,7 @@ from drake_screw.acquisition import (
     Suggestion,
 )
 from drake_screw.acquisition.loop import initial_places
+from drake_screw.assembly.attempting import judged_attempt
 from drake_screw.assembly.setup import Setup
 from drake_screw.bandits import Verdict
 from drake_screw.demonstrations import Demonstration, Recording
@@ -27,7 +28,7 @@ from drake_screw.errors import RunDirectoryError, ScenarioError, counted
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.codec import REMEDY, load_evaluation
 from drake_screw.runs.directory import INSTANCES, SCENARIO, RunDirectory
-from drake_screw.visualization.attempt import Attempt, attempt, collided, executed
+from drake_screw.visualization.attempt import Attempt, executed
 from drake_screw.visualization.browsing import Catalogue, catalogue
 from drake_screw.visualization.cells import cells
 
@@ -256,17 +257,14 @@ class RunReader:
         if found.cause == Cause.NOT_TRIED:
             planner = self.setup.planner
             found = planner.all_outcomes([demonstration], X_WO[None], self.setup.start)[0, 0]
-        plan = self.setup.judged_plan(demonstration, X_WO, found)
-        names, one = [o.name for o in self.setup.area.objects], self.setup.arm_of(found)
-        turned = one.symmetries.named(demonstration, X_WO, plan.angles, names)
-        name = self.setup.arm_name(found)
-        tried = attempt(one.arm, number, demonstration, X_WO, plan, name)
+        tried = judged_attempt(self.setup, number, demonstration, X_WO, found)
+        names = [o.name for o in self.setup.area.objects]
+        symmetries = self.setup.arm_of(found).symmetries
+        turned = symmetries.named(demonstration, X_WO, tried.plan.angles, names)
         tried = replace(tried, turned=turned)
         if found.cause == Cause.EXECUTION and ran is not None:
             return executed(tried, found, str(ran.words[instance]))
-        if found.cause != Cause.COLLISION:
-            return tried
-        return collided(tried, found, one.workcell, self.setup.scenario.planner.clearance)
+        return tried
 
     def _event(self, round: int) -> RoundFinished:
         """A round as the run had it; without drawing or planning anything."""

@@ -8,18 +8,16 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup, escape
 
+from drake_screw.assembly.attempting import judged_attempt
 from drake_screw.assembly.setup import Setup
 from drake_screw.demonstrations import Look, Recording
 from drake_screw.demonstrations.fidelity import Fidelity
 from drake_screw.errors import counted
-from drake_screw.planning import Cause
 from drake_screw.typing import Array
 from drake_screw.visualization.attempt import (
     DONE,
     FAILED,
     Attempt,
-    attempt,
-    collided,
     describe_segment,
     headline,
 )
@@ -129,10 +127,7 @@ def offer(setup: Setup, X_WO: Array, number: int, recording: Recording, start: f
         assert look.refused is not None
         raise look.refused
     found = setup.planner.all_outcomes([demonstration], X_WO[None], setup.start)[0, 0]
-    plan, one = setup.judged_plan(demonstration, X_WO, found), setup.arm_of(found)
-    tried = attempt(one.arm, number, demonstration, X_WO, plan, setup.arm_name(found))
-    if found.cause == Cause.COLLISION:
-        tried = collided(tried, found, one.workcell, setup.scenario.planner.clearance)
+    tried = judged_attempt(setup, number, demonstration, X_WO, found)
     return Offer(recording, start, look, tried)
 
 
