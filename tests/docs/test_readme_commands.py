@@ -35,22 +35,21 @@ def commands(page: str = "README.md") -> list[str]:
     return [line.split("  #")[0].strip() for line in lines if not line.startswith("make")]
 
 
+def succeeds(line: str, folder: Path) -> str:
+    """What a line of a shell prints in a folder; it ends with 0."""
+    done = subprocess.run(line, shell=True, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
 @pytest.mark.slow
 def test_getting_started_ends_with_an_own_recording_looked_at(tmp_path: Path) -> None:
     if not COMMAND.exists():
         pytest.skip(f"the command is not installed beside {sys.executable}")
     for line in commands("docs/getting_started.md")[1:]:  # after the environment is activated
-        done = subprocess.run(
-            line.replace("drake-screw", str(COMMAND), 1),
-            shell=True,
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+        output = succeeds(line.replace("drake-screw", str(COMMAND), 1), tmp_path)
         if line.startswith("cat"):
-            x, y = (float(row.split(",")[3]) for row in done.stdout.splitlines()[:2])
+            x, y = (float(row.split(",")[3]) for row in output.splitlines()[:2])
             assert (x, y) == pytest.approx((1.08, 0.78), abs=0.005)  # what the page says next
     assert "log" in (tmp_path / "mine.html").read_text()
     assert (tmp_path / "covered" / "run.json").is_file()
@@ -64,15 +63,7 @@ def test_commands_in_their_order(tmp_path: Path) -> None:
     listed = commands()
     assert len(listed) >= 10
     for line in listed:
-        done = subprocess.run(
-            line.replace("drake-screw", str(COMMAND)),
-            shell=True,
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+        succeeds(line.replace("drake-screw", str(COMMAND)), tmp_path)
     missing = [name for name in LEAVES if not (tmp_path / name).is_file()]
     assert missing == []
     for entry in re.findall(r"^      (\S+)", (ROOT / "README.md").read_text(), re.MULTILINE):
