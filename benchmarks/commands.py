@@ -6,8 +6,8 @@ Processor time is the operating system's account of the command and all the proc
 started. Every command is run once before, so that compiled code is in the cache and files are in
 memory; of the repeats the least counts, since other work can only add. With --history a line of
 JSON is appended to FILE for each call, and where the file has one already the times of the last are
-printed beside: a slip is seen there. commands.jsonl, beside this file, has such lines; its clock
-times are of a machine that had much else to do.
+printed beside: a slip is seen there. commands.jsonl, beside this file, has such lines; clock
+times before 2026-11-27T11 are of a machine that had much else to do.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ from typing import Any
 
 import yaml
 from soak_breaking import break_file, broken_place
+from soak_data_sets import SETS, broken_set, import_of
 from soak_originals import EVALUATE, IMPORT, LOOK
 from soak_values import Random, pick, word
 
@@ -85,7 +86,8 @@ def _library(rng: Random, originals: Path) -> list[str]:
                 "joint_angles.csv",
             ),
         )
-        if extra.parent.is_dir() and not extra.exists() and not extra.is_symlink():
+        inside = Path.cwd() in extra.resolve().parents  # a broken place may lead out of here
+        if inside and extra.parent.is_dir() and not extra.exists() and not extra.is_symlink():
             extra.write_text(word(rng), errors="replace")
     commands = (["check", "full.yaml"], ["look", "library", "--scenario", "full.yaml"])
     return list(pick(rng, commands))
@@ -191,6 +193,14 @@ def _command_line(rng: Random, originals: Path) -> list[str]:
     return [verb, *(a.replace("\x00", "")[:100_000] for a in arguments)]
 
 
+def _data_set(rng: Random, originals: Path) -> list[str]:
+    name = pick(rng, SETS)
+    _bring(originals, "task.yaml", "arm.sdf", name)
+    arguments = import_of(name)
+    broken_set(rng, name)
+    return arguments
+
+
 KINDS: dict[str, tuple[float, Callable[[Random, Path], list[str]]]] = {
     "scenario": (0.22, _scenario),
     "override": (0.2, _override),
@@ -203,5 +213,6 @@ KINDS: dict[str, tuple[float, Callable[[Random, Path], list[str]]]] = {
     "model": (0.04, _model),
     "study": (0.01, _study),
     "command line": (0.1, _command_line),
+    "data set": (0.05, _data_set),
 }
 """Share of all inputs, and what breaks one in the working directory and says what is called."""

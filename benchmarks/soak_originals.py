@@ -8,10 +8,12 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import yaml
+from soak_data_sets import SETS, import_of, make_data_sets
 
 from drake_screw.resources import find_resource
 
@@ -117,7 +119,8 @@ def make_originals(folder: Path) -> None:
     record = folder / "run" / "run.json"
     stopped = json.loads(record.read_text()) | {"status": "interrupted", "certificate": None}
     (folder / "stopped.json").write_text(json.dumps(stopped))
-    for arguments in RIGHT:
+    make_data_sets(folder, partial(_call, folder, codes=(0,)))
+    for arguments in (*RIGHT, *map(import_of, SETS)):
         _call(folder, *arguments, codes=(0,))
 
 

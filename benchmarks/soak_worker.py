@@ -170,7 +170,16 @@ def verdict_of(code: int, printed: str, changed: list[str], names: Sequence[str]
 
 
 def _names(arguments: list[str]) -> Iterator[str]:
-    yield from ("--set", "--object", "recording.yaml", "jug.obj", "part.stl", "arm.sdf", "'part'")
+    yield from (
+        "--set",
+        "--object",
+        "recording.yaml",
+        "jug.obj",
+        "part.stl",
+        "arm.sdf",
+        "'part'",
+        "'jug'",
+    )
     for argument in arguments[1:]:
         if not argument.startswith("--"):
             parts = argument.split("=")

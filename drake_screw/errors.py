@@ -10,6 +10,7 @@ import difflib
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from math import floor
 from pathlib import Path
 
 from drake_screw.typing import PathLike
@@ -107,6 +108,28 @@ def extra(
         yield
     except ImportError as error:
         raise raises(message, remedy=f"pip install 'drake-screw[{name}]'", file=file) from error
+
+
+def confidence(level: float) -> str:
+    """A confidence or a coverage in digits, so many that it is not rounded up.
+
+    >>> confidence(0.95), confidence(0.9996), confidence(1.0 - 1e-9)
+    ('0.95', '0.9996', '0.999999999')
+    """
+    for digits in range(6, 17):
+        text = f"{level:.{digits}g}"
+        if 1.0 - float(text) >= 0.999 * (1.0 - level):
+            break
+    return text
+
+
+def rounded_down(p: float) -> str:
+    """A lower bound on a probability with four digits.
+
+    >>> rounded_down(0.99999), rounded_down(0.95)
+    ('0.9999', '0.9500')
+    """
+    return f"{floor(p * 1e4 + 1e-9) / 1e4:.4f}"
 
 
 def counted(count: int, noun: str) -> str:

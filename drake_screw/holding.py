@@ -14,6 +14,7 @@ from pathlib import Path
 
 from drake_screw.errors import RunDirectoryError
 from drake_screw.files import now, writing
+from drake_screw.json_values import decode_json
 
 LOCK = ".lock"
 
@@ -92,7 +93,7 @@ def _this_process() -> dict[str, str | int]:
 
 def _holder(file: Path) -> str:
     try:
-        known = json.loads(file.read_text())
+        known = decode_json(file.read_text())
         return f"process {known['process']} on {known['host']}, since {known['since']}"
     except (OSError, ValueError, KeyError, TypeError):
         return "it does not say which"

@@ -6,18 +6,21 @@ A name in a scenario or on the command line is one of
 - the name of an entry point that an installed package declares in ``drake_screw.<group>``;
 - a reference ``package.module:Object`` to any object that Python can import.
 
-Nothing is imported before `find` asks for it.
+Nothing is imported before `find` asks for it. What is somebody else's and raises anything but a
+`DrakeScrewError` when it is called becomes a `PluginError`, which says so.
 """
 
 from __future__ import annotations
 
 import re
+import traceback
 from collections.abc import Callable, Mapping
+from functools import wraps
 from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any, Literal
 
-from drake_screw.errors import PluginError, nearest, suggestion
+from drake_screw.errors import DrakeScrewError, PluginError, nearest, suggestion
 
 Group = Literal[
     "strategies",
@@ -145,7 +148,26 @@ def find(group: Group, name: str) -> Callable[..., Any]:
             f"{kind} '{name}': expected a class or a function, found {type(found).__name__}"
         )
     called: Callable[..., Any] = found
-    return called
+    return _guarded(called, f"{kind} '{name}'") if is_plugged_in(group, name) else called
+
+
+def _guarded(part: Callable[..., Any], what: str) -> Callable[..., Any]:
+    """The same part; what is raised when it is called is told in the name of who wrote it."""
+
+    @wraps(part)
+    def call(*args: Any, **options: Any) -> Any:
+        try:
+            return part(*args, **options)
+        except DrakeScrewError:
+            raise
+        except Exception as error:
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            raise PluginError(
+                f"{what} raised {type(error).__name__}: {error}",
+                remedy=f"In {place.filename}:{place.lineno}. --verbose shows the way there.",
+            ) from error
+
+    return call
 
 
 def choices(group: Group, name: str) -> str:

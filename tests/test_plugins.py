@@ -11,7 +11,7 @@ import pytest
 
 from drake_screw import bandits, plugins
 from drake_screw.acquisition.simulated import MOTIONS
-from drake_screw.errors import PluginError
+from drake_screw.errors import PluginError, RecordingError
 from drake_screw.plugins import BUILT_IN, Group, find, is_known, is_plugged_in, names
 
 
@@ -89,3 +89,19 @@ def test_what_cannot_be_found_is_told(
         find("teachers", name)
     assert f"teacher '{name}': " in str(caught.value)
     assert message in str(caught.value)
+
+
+def test_what_a_part_of_somebody_elses_raises_is_told_in_its_name(own: Path) -> None:
+    (own / "raising_part.py").write_text("def mine(setup):\n    return setup['x']\n")
+    with pytest.raises(PluginError) as caught:
+        find("teachers", "raising_part:mine")({})
+    assert caught.value.message == "teacher 'raising_part:mine' raised KeyError: 'x'"
+    assert f"In {own / 'raising_part.py'}:2." in str(caught.value)
+    assert isinstance(caught.value.__cause__, KeyError)
+
+
+def test_what_it_refuses_in_our_words_is_left_as_it_is(own: Path) -> None:
+    text = "from drake_screw import RecordingError\ndef mine(): raise RecordingError('no')\n"
+    (own / "refusing_part.py").write_text(text)
+    with pytest.raises(RecordingError, match="no"):
+        find("teachers", "refusing_part:mine")()

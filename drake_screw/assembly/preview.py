@@ -39,7 +39,7 @@ from drake_screw.bandits.decision_boundary import clear_boundary, deciding_size
 from drake_screw.bandits.eprocess import EProcess
 from drake_screw.bandits.naive_pac import NaivePac, sample_size
 from drake_screw.bandits.spending import attempt_delta
-from drake_screw.errors import counted
+from drake_screw.errors import confidence, counted
 from drake_screw.scenario.schema import Scenario
 from drake_screw.steps import Step, Tell, to_nobody
 from drake_screw.tasks import anywhere
@@ -155,8 +155,8 @@ class Preview:
         yield "regions", f"K = {self.regions}" if self.adaptive is None else str(self.adaptive)
         yield (
             "goal",
-            f"every region succeeds at least {self.beta:g} of the time, accuracy "
-            f"{self.epsilon:g}, confidence {1 - self.delta:g}",
+            f"every region succeeds at least {confidence(self.beta)} of the time, accuracy "
+            f"{self.epsilon:g}, confidence {confidence(1.0 - self.delta)}",
         )
         executed = self.success == "execution"
         if executed:

@@ -6,6 +6,7 @@ import numpy as np
 
 from drake_screw.bandits.tally import Tally
 from drake_screw.bandits.verdict import Goal, Verdict
+from drake_screw.errors import confidence
 from drake_screw.typing import Array
 
 
@@ -13,8 +14,8 @@ def certificate(goal: Goal, *, spend: bool) -> str:
     """What a certificate states."""
     scope = "the whole run" if spend else "this round"
     return (
-        f"every region succeeds at least {goal.beta:g} of the time "
-        f"(confidence {1.0 - goal.delta:g} for {scope})"
+        f"every region succeeds at least {confidence(goal.beta)} of the time "
+        f"(confidence {confidence(1.0 - goal.delta)} for {scope})"
     )
 
 
@@ -50,7 +51,7 @@ def conclude(
     others = "no other fails more often" + (f" by over {gap:.4f}" if gap > 0.0 else "")
     ask = (
         f"this region fails at least {lower[region]:.4f} of the time, and {others} "
-        f"(confidence {level:.6g} for this round)"
+        f"(confidence {confidence(level)} for this round)"
     )
     return Verdict(
         certified=certified,

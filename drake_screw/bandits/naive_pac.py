@@ -12,6 +12,7 @@ from drake_screw.bandits.conclusion import certificate
 from drake_screw.bandits.spending import attempt_delta
 from drake_screw.bandits.tally import Tally
 from drake_screw.bandits.verdict import Goal, Pull, Verdict
+from drake_screw.errors import confidence
 
 PARTS = 8  # A round is drawn in so many parts, so that its progress can be shown.
 
@@ -81,7 +82,7 @@ class NaivePac:
         comparison = "<=" if certified else ">"
         ask = (
             f"no region fails more often than this one by over {goal.epsilon:g} "
-            f"(confidence {1.0 - delta:.6g} for this round)"
+            f"(confidence {confidence(1.0 - delta)} for this round)"
         )
         return Verdict(
             certified=certified,

@@ -21,6 +21,7 @@ from drake_screw.bandits.decision_boundary import clear_boundary
 from drake_screw.bandits.mixture import confidence_interval, ln_e_flag
 from drake_screw.bandits.tally import FIRST
 from drake_screw.bandits.verdict import BanditError, Goal
+from drake_screw.errors import confidence
 from drake_screw.typing import Array
 
 CellPull = Callable[[Array, Array, int], tuple[Array, Array]]
@@ -189,11 +190,11 @@ class CertifyOrSplit:
 
     def _claim(self, cell: Cell | None) -> str:
         if cell is None:
+            held = f"confidence {confidence(1.0 - self.goal.delta)} for the whole run"
             return (
                 f"every dyadic cell that takes up at least {self.smallest:.4g} of the whole "
                 f"succeeds at least {1.0 - max(self.level, self.goal.tau):g} of the time, the "
-                f"whole at least {self.goal.beta:g} (confidence {1.0 - self.goal.delta:g} for the "
-                "whole run)"
+                f"whole at least {confidence(self.goal.beta)} ({held})"
             )
         return f"this cell fails at least {self.bounds(cell)[0]:.4f} of the time"
 

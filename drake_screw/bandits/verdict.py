@@ -15,6 +15,10 @@ Pull = Callable[[Array], Array]
 """Draws counts (K,) int fresh, independent samples; answers the failures among them, (K,) int."""
 
 
+LEAST = 1e-12
+"""Of a probability: below, 1 - p may be 1 and 1 / p infinite, and machines err more often."""
+
+
 class BanditError(DrakeScrewError):
     """A goal, a strategy or an option of one, or an answer to a pull that cannot be used."""
 
@@ -24,10 +28,10 @@ class Goal:
     """The statement to certify: every region fails at most 1 - beta of the time.
 
     Args:
-        beta: coverage wanted in every region, in (0, 1).
+        beta: coverage wanted in every region, in [`LEAST`, 1).
         epsilon: indifference, in (0, 1 - beta). Regions that fail between q and tau of the time
             may be judged either way.
-        delta: the chance of error allowed, in (0, 1).
+        delta: the chance of error allowed, in [`LEAST`, 1).
 
     Raises:
         BanditError: a value outside its range.
@@ -40,11 +44,12 @@ class Goal:
     def __post_init__(self) -> None:
         for name in ("beta", "delta"):
             value = getattr(self, name)
-            if not 0.0 < value < 1.0:
+            if not LEAST <= value < 1.0:
                 raise BanditError(
-                    f"{name} is {value}", remedy=f"Give {name} a value strictly between 0 and 1."
+                    f"{name} is {value}",
+                    remedy=f"Give {name} a value of at least {LEAST:g} and below 1.",
                 )
-        if not (self.epsilon > 0.0 and self.q > 1e-12):
+        if not (self.epsilon > 0.0 and self.q > LEAST):
             raise BanditError(
                 f"epsilon is {self.epsilon} with beta {self.beta}: no round could ever certify",
                 remedy=f"Give epsilon a value strictly between 0 and 1 - beta = {self.tau:.6g}.",

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from drake_screw.errors import RecordingError, extra
+from drake_screw.json_values import decode_json, within
 from drake_screw.recordings.mapping import Mapping
+from drake_screw.recordings.others import read_by_others
 from drake_screw.recordings.raw import Raw
 from drake_screw.tables.table import from_arrays
 from drake_screw.tables.text import Progress
@@ -31,7 +32,6 @@ def read_lerobot(
         RecordingError: pyarrow is not installed, it is no such dataset, or `angles` is not said.
     """
     with extra("lerobot", "LeRobot's datasets need pyarrow", RecordingError, source):
-        import pyarrow as pa
         import pyarrow.parquet as pq
     info = _info(source)
     if mapping.angles is None and mapping.hand is None:
@@ -46,16 +46,17 @@ def read_lerobot(
         raise RecordingError("no data/**/*.parquet in it", file=source)
     found: dict[int, list[tuple[Any, Any]]] = {}
     for i, file in enumerate(files):
-        try:
+        with read_by_others(file, "frames", f"Expected columns {', '.join(_COLUMNS)}."):
             frames = pq.read_table(file, columns=list(_COLUMNS))
-        except (pa.ArrowException, OSError, KeyError) as error:
+            episode = np.array(frames["episode_index"].to_pylist(), dtype=np.int64)
+            time = np.array(frames["timestamp"].to_pylist(), dtype=float)
+            state = np.array(frames[STATE].to_pylist(), dtype=float)
+        if len(state) and state.ndim != 2:
             raise RecordingError(
-                f"cannot be read as frames: {error}",
-                remedy=f"Expected columns {', '.join(_COLUMNS)}.",
+                f"{STATE} is not a list of numbers in each row",
+                remedy="Expected a number for each joint.",
                 file=file,
-            ) from error
-        episode = frames["episode_index"].to_numpy()
-        time, state = frames["timestamp"].to_numpy(), np.array(frames[STATE].to_pylist(), float)
+            )
         for number in np.unique(episode).tolist():
             rows = episode == number
             found.setdefault(number, []).append((time[rows], state[rows]))
@@ -65,6 +66,14 @@ def read_lerobot(
 
 
 def _episode(source: Path, number: int, parts: list[tuple[Any, Any]], info: Any) -> Raw:
+    widths = sorted({state.shape[1] for _, state in parts})
+    if len(widths) > 1:
+        raise RecordingError(
+            f"{STATE} has {widths[0]} numbers in some rows of episode {number} and {widths[-1]} in "
+            "others",
+            remedy="Expected a number for each joint.",
+            file=source,
+        )
     t, q = (np.concatenate(each) for each in zip(*parts, strict=True))
     names = _names(info, q.shape[1])
     columns = {"timestamp": t, **{name: q[:, j] for j, name in enumerate(names)}}
@@ -75,17 +84,17 @@ def _episode(source: Path, number: int, parts: list[tuple[Any, Any]], info: Any)
 
 def _names(info: Any, width: int) -> list[str]:
     """Of the state's entries, without ".pos" behind them; numbered where there are none."""
-    names = info.get("features", {}).get(STATE, {}).get("names")
+    names = within(info, "features", STATE, "names")
     if isinstance(names, dict):
         names = next(iter(names.values()), None)
-    if not names or len(names) != width:
+    if not isinstance(names, list) or len(names) != width:
         return [f"state_{i}" for i in range(width)]
     return [str(name).removesuffix(".pos") for name in names]
 
 
 def _info(source: Path) -> Any:
     try:
-        return json.loads((source / INFO).read_text(encoding="utf-8"))
+        return decode_json((source / INFO).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise RecordingError(
             f"not a dataset of LeRobot: {INFO} cannot be read",

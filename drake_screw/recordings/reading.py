@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from shlex import quote
 
+import numpy as np
+
 from drake_screw.demonstrations.library import OBJECTS, is_recording
 from drake_screw.errors import RecordingError
 from drake_screw.plugins import choices, find, is_known
@@ -74,9 +76,10 @@ def read_recordings(
         format = said.format or _format(file)
         if not is_known("sources", format):
             raise RecordingError(f"no format '{format}'", remedy=choices("sources", format))
-        raws = list(find("sources", format)(file, said, progress(file) if progress else None))
-        while raws:  # one at a time, so that a long one is let go of when it is understood
-            found += _understood(raws.pop(0), said, robots, format, objects_needed)
+        with np.errstate(over="ignore", invalid="ignore"):  # numbers beyond sense are refused later
+            raws = list(find("sources", format)(file, said, progress(file) if progress else None))
+            while raws:  # one at a time, so that a long one is let go of when it is understood
+                found += _understood(raws.pop(0), said, robots, format, objects_needed)
     for name, count in Counter(each.name for each in found).items():
         if count > 1:
             raise RecordingError(

@@ -18,6 +18,7 @@ from drake_screw.errors import RecordingError, extra, suggestion
 from drake_screw.recordings.episodes import PAUSES
 from drake_screw.recordings.frames import Frames, Track, plain_frame
 from drake_screw.recordings.mapping import Mapping
+from drake_screw.recordings.others import read_by_others
 from drake_screw.recordings.raw import Labels, Raw
 from drake_screw.tables import Table
 from drake_screw.tables.table import from_arrays
@@ -43,39 +44,36 @@ def read_bag(source: Path, mapping: Mapping, progress: Progress | None = None) -
         RecordingError: rosbags is not installed, it is no bag, or it has no such topic, or several.
     """
     with extra("ros", "bags need rosbags", RecordingError, source):
-        from rosbags.highlevel import AnyReader, AnyReaderError
+        from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     bag = source.parent if source.suffix in (".db3", ".mcap") and _described(source) else source
-    try:
-        with AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
-            kinds = {c.topic: c.msgtype for c in reader.connections}
-            topic = _topic(kinds, mapping.topic, source)
-            cuts = _cutting(kinds, mapping.episodes, source)
-            wanted = [c for c in reader.connections if _is_wanted(c.topic, c.msgtype, topic, cuts)]
-            rows: list[_Row] = []
-            labels: list[tuple[int, Any]] = []
-            ahead = array("q")
-            poses = _Poses()
-            hand_frame = ""
-            begin, length = reader.start_time, max(reader.duration, 1)
-            for count, (connection, stamp, raw) in enumerate(reader.messages(connections=wanted)):
-                message = reader.deserialize(raw, connection.msgtype)
-                if connection.topic == topic:
-                    rows.append(_row(message, stamp, connection.msgtype))
-                    ahead.append(rows[-1][0] - stamp)
-                    hand_frame = hand_frame or plain_frame(message.header.frame_id)
-                elif connection.topic == cuts:
-                    labels.append((stamp, message.data))
-                else:
-                    poses.add(message, stamp, connection.topic, connection.msgtype)
-                if progress and count % 1000 == 0:
-                    progress(min((stamp - begin) / length, 1.0))
-    except (AnyReaderError, OSError) as error:
-        raise RecordingError(
-            f"cannot be read as a bag: {error}",
-            remedy="Give a .bag, or the folder of a ROS 2 bag, with its metadata.yaml.",
-            file=source,
-        ) from error
+    remedy = "Give a .bag, or the folder of a ROS 2 bag, with its metadata.yaml."
+    with (
+        read_by_others(source, "a bag", remedy),
+        AnyReader([bag], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader,
+    ):
+        kinds = {c.topic: c.msgtype for c in reader.connections}
+        topic = _topic(kinds, mapping.topic, source)
+        cuts = _cutting(kinds, mapping.episodes, source)
+        wanted = [c for c in reader.connections if _is_wanted(c.topic, c.msgtype, topic, cuts)]
+        rows: list[_Row] = []
+        labels: list[tuple[int, Any]] = []
+        ahead = array("q")
+        poses = _Poses()
+        hand_frame = ""
+        begin, length = reader.start_time, max(reader.duration, 1)
+        for count, (connection, stamp, raw) in enumerate(reader.messages(connections=wanted)):
+            message = reader.deserialize(raw, connection.msgtype)
+            if connection.topic == topic:
+                rows.append(_row(message, stamp, connection.msgtype))
+                ahead.append(rows[-1][0] - stamp)
+                hand_frame = hand_frame or plain_frame(message.header.frame_id)
+            elif connection.topic == cuts:
+                labels.append((stamp, message.data))
+            else:
+                poses.add(message, stamp, connection.topic, connection.msgtype)
+            if progress and count % 1000 == 0:
+                progress(min((stamp - begin) / length, 1.0))
     table, first, notes = _table(rows, kinds[topic], source, topic)
     told = {"time": "time", "time_unit": "s", "topic": topic}
     said: dict[str, Labels] = {}

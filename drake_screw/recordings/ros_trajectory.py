@@ -33,8 +33,6 @@ def read_trajectory(
     try:
         with source.open("rb") as stream:
             messages = [each for each in yaml.load_all(stream, _Loader) if each is not None]
-    except (OSError, UnicodeDecodeError) as error:
-        raise RecordingError(f"cannot be read: {error}", file=source) from error
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         raise RecordingError(
@@ -43,6 +41,8 @@ def read_trajectory(
             file=source,
             line=None if mark is None else mark.line + 1,
         ) from error
+    except (OSError, ValueError, RecursionError) as error:  # ValueError: of dates and numbers
+        raise RecordingError(f"cannot be read: {error}", file=source) from error
     found = [_trajectory(message, source) for message in messages] or [_trajectory(None, source)]
     names = [source.stem] if len(found) == 1 else _numbered(source.stem, len(found))
     return tuple(_raw(name, each, source) for name, each in zip(names, found, strict=True))

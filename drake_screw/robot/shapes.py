@@ -20,6 +20,7 @@ from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 from pydrake.multibody.tree import RigidBody
 
 from drake_screw.errors import ModelError
+from drake_screw.files import NO_FILE
 from drake_screw.robot.mesh_files import CONVERTED, hull_file
 from drake_screw.robot.model_text import LARGEST
 from drake_screw.typing import Array
@@ -171,7 +172,8 @@ def _hull(file: Path, scale: float) -> Convex:
     if not file.exists():
         raise ModelError("there is no such mesh", remedy=remedy, file=file)
     if not file.is_file():
-        raise ModelError("expected a mesh, found a folder", remedy=remedy, file=file)
+        what = "it is a folder" if file.is_dir() else NO_FILE
+        raise ModelError(f"no mesh: {what}", remedy=remedy, file=file)
     suffix = file.suffix.lower()
     if suffix not in (*MESH_SUFFIXES, *CONVERTED):
         raise ModelError(

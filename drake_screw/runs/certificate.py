@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from drake_screw.assembly.freedoms import Freedom
-from drake_screw.errors import listed
+from drake_screw.errors import confidence, listed, rounded_down
 from drake_screw.runs.execution_terms import ExecutionTerms
 from drake_screw.runs.html import certificate_html
 
@@ -117,11 +117,13 @@ class Certificate:
         if self.certified:
             shown = [_sentence(self.claim)]
         else:
-            held = f"confidence {self.confidence:g} for {self.confidence_holds_for}"
+            assert self.confidence is not None
+            assert self.coverage is not None
+            held = f"confidence {confidence(self.confidence)} for {self.confidence_holds_for}"
+            least = f"beta' = {rounded_down(self.coverage)}"
             shown = [
                 _sentence(self.reason),
-                f"Shown so far: every region succeeds at least beta' = {self.coverage:.4f} of the "
-                f"time ({held}).",
+                f"Shown so far: every region succeeds at least {least} of the time ({held}).",
                 f"Of the weakest region: {self.claim}.",
             ]
         free_roll = () if self.free_roll is None else (self.free_roll,)

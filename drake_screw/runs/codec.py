@@ -16,6 +16,7 @@ from pydantic_core import ErrorDetails
 from drake_screw.acquisition import Evaluation, Executed
 from drake_screw.bandits import Cell
 from drake_screw.errors import RunDirectoryError
+from drake_screw.json_values import decode_json
 from drake_screw.planning import Cause, Outcomes
 from drake_screw.runs.certificate import Certificate
 from drake_screw.runs.records import RunRecord, SuggestionRecord
@@ -53,7 +54,7 @@ def read_run_record(file: Path) -> RunRecord:
     """
     try:
         text = file.read_text(encoding="utf-8")
-        data = json.loads(text)
+        data = decode_json(text)
     except (OSError, ValueError) as error:
         raise RunDirectoryError(f"damaged: {error}", remedy=REMEDY, file=file) from error
     if not isinstance(data, dict) or not isinstance(data.get("format"), int):

@@ -10,6 +10,7 @@ from drake_screw.assembly.executing import Place
 from drake_screw.errors import RunDirectoryError
 from drake_screw.execution.parallel import Judged
 from drake_screw.files import writing
+from drake_screw.json_values import decode_json
 from drake_screw.runs.directory import UNWRITABLE_RUN
 
 FILE = "executed.jsonl"
@@ -44,7 +45,7 @@ class KeptExecutions:
                 self._file.write_bytes(whole + ended)
         for number, line in enumerate(whole.splitlines(), start=1):
             try:
-                entry = json.loads(line)
+                entry = decode_json(line)
                 judged = Judged(**entry["judged"])
                 if entry["round"] == round + 1:
                     found[tuple(entry["place"])] = judged

@@ -9,6 +9,8 @@ from typing import Any
 
 import yaml
 
+from drake_screw.errors import confidence
+
 
 @dataclass(frozen=True)
 class TableSummary:
@@ -208,7 +210,8 @@ class Selection:
         found = f"The best set of {n} is {_names(self.fewer.recordings)}. {_found(self.fewer)}"
         if self.fewer_ruled_out:
             needed = f"{_percent(self.table.success_needed)} of the time in {_regions(self.table)}"
-            return f"{found} No set of {n} succeeds {needed} (confidence {self.confidence:g})."
+            held = f"confidence {confidence(self.confidence)}"
+            return f"{found} No set of {n} succeeds {needed} ({held})."
         if self.fewer.attempt is not None:
             attempt = f"attempt {self.fewer.attempt}"
             return f"{found} It, or a set with all of it, was not certified in {attempt}."

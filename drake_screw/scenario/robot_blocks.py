@@ -166,7 +166,7 @@ class RobotBlock(Block):
                 yield Problem((key,), "missing; an arm needs it", "Or list several in robot.arms.")
         if self.joints is not None:
             yield from _joints(self.joints, self.parked, "Give its angle in robot.start.")
-            yield from _start(self.start or "", self.joints)
+            yield from _start("" if self.start is None else self.start, self.joints)
 
     def _several_arms(self, arms: tuple[ArmBlock, ...]) -> Iterator[Problem]:
         if not arms:

@@ -180,7 +180,7 @@ MeshFile = Annotated[Path, BeforeValidator(_path)]
 
 Name = Annotated[str, Field(pattern=NAME_PATTERN)]
 Positive = Annotated[float, Field(gt=0)]
-Probability = Annotated[float, Field(gt=0, lt=1)]
+Probability = Annotated[float, Field(ge=1e-12, lt=1)]
 Option = bool | int | float | str
 Options = Annotated[dict[str, Option], BeforeValidator(_nothing_is_empty)]
 Pairs = Annotated[

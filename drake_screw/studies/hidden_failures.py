@@ -12,7 +12,7 @@ from drake_screw.acquisition import Evaluation, RoundFinished
 from drake_screw.bandits import Verdict, coverage_bound
 from drake_screw.bandits.mixture import confidence_interval
 from drake_screw.demonstrations import Demonstration
-from drake_screw.errors import counted
+from drake_screw.errors import confidence, counted, rounded_down
 from drake_screw.studies.experiment import Experiment, StudyRun, run_seed, split
 from drake_screw.studies.figures import save_comparison
 from drake_screw.tasks import GridRegions, draw_in_all
@@ -121,8 +121,8 @@ def evenly(
         certified=coverage >= setup.goal.beta,
         region=int(np.argmax(failures)),
         reason=f"{EACH:,} instances in every region",
-        claim=f"every region succeeds at least {coverage:.4f} of the time "
-        f"(confidence {1.0 - delta:g})",
+        claim=f"every region succeeds at least {rounded_down(coverage)} of the time "
+        f"(confidence {confidence(1.0 - delta)})",
         samples=samples,
         failures=failures,
         lower=lower,

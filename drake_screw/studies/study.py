@@ -27,6 +27,7 @@ from drake_screw.files import (
     writing,
 )
 from drake_screw.holding import holding
+from drake_screw.json_values import decode_json
 from drake_screw.runs.begun_with import check_ways_around
 from drake_screw.runs.directory import SCENARIO
 from drake_screw.scenario.loader import dump_scenario, load_stored_scenario
@@ -221,14 +222,14 @@ def open_study(path: PathLike) -> Study:
             file=path,
         )
     try:
-        record = json.loads(file.read_text())
+        record = decode_json(file.read_text())
         found, known = record["format"], dict(record["hashes"])
         numbers = [record["runs"], *record["regions"]]
         if "model" not in known or len(numbers) < 2:
             raise KeyError("keys are missing")
         if not all(type(number) is int and number >= 1 for number in numbers):
             raise ValueError("regions and runs are not whole numbers from 1")
-    except (ValueError, KeyError, TypeError, RecursionError, OSError) as error:
+    except (ValueError, KeyError, TypeError, OSError) as error:
         raise RunDirectoryError(
             f"damaged: {error}", remedy="Restore it, or begin the study again.", file=file
         ) from error

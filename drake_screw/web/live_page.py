@@ -22,6 +22,7 @@ from drake_screw.acquisition import (
 from drake_screw.assembly.setup import Setup
 from drake_screw.assembly.symmetries import object_symmetries
 from drake_screw.demonstrations import Demonstration
+from drake_screw.errors import confidence
 from drake_screw.planning import Cause
 from drake_screw.runs.narration import describe
 from drake_screw.runs.pictures import make_scene
@@ -99,8 +100,8 @@ class LivePage:
             "details": "",
             "color": INK,
             "teach": "",
-            "goal": f"every region succeeds at least {goal.beta:.0%} of the time, measured to "
-            f"{goal.epsilon:g} with confidence {1 - goal.delta:.0%}",
+            "goal": f"every region succeeds at least {confidence(goal.beta)} of the time, measured "
+            f"to {goal.epsilon:g} with confidence {confidence(1.0 - goal.delta)}",
             "map": "",
             "map_words": "",
             "finished": "",

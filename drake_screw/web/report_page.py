@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from drake_screw.acquisition import RoundFinished
 from drake_screw.assembly.setup import Setup
+from drake_screw.errors import confidence
 from drake_screw.files import write_text, writing
 from drake_screw.planning import Cause
 from drake_screw.planning.touching import count_collisions
@@ -84,8 +85,8 @@ def _record(reader: RunReader) -> dict[str, Any]:
     stated = record.certificate
     certified = stated is not None and stated.certified
     facts = [
-        ("goal", f"every region succeeds at least {block.beta:g} of the time"),
-        ("accuracy, confidence", f"{block.epsilon:g}, {1 - block.delta:g}"),
+        ("goal", f"every region succeeds at least {confidence(block.beta)} of the time"),
+        ("accuracy, confidence", f"{block.epsilon:g}, {confidence(1.0 - block.delta)}"),
         ("strategy", block.strategy),
         ("demonstrations", len(record.demonstrations)),
         ("rounds", reader.rounds),

@@ -24,6 +24,7 @@ from urllib.parse import parse_qs, urlsplit
 from markupsafe import Markup
 
 from drake_screw.errors import DrakeScrewError
+from drake_screw.json_values import decode_json
 from drake_screw.visualization.meshcat_page import add_to_page, render
 
 WAIT = 20.0
@@ -209,7 +210,7 @@ class PanelServer:
             _answer(request, 415, "text/plain", b"expected application/json")
             return
         try:
-            message = json.loads(request.rfile.read(int(request.headers["Content-Length"])))
+            message = decode_json(request.rfile.read(int(request.headers["Content-Length"])))
         except (ValueError, TypeError):
             message = None
         if not isinstance(message, dict) or not all(map(_plain, message.values())):
@@ -219,10 +220,10 @@ class PanelServer:
         _answer(request, 204, "text/plain", b"")
 
 
-def _plain(value: Any) -> bool:
+def _plain(value: Any, deep: int = 4) -> bool:
     """Whether a value may stand in a message: a word, nothing, or numbers of a sensible size."""
     if isinstance(value, list):
-        return all(map(_plain, value))
+        return deep > 0 and all(_plain(one, deep - 1) for one in value)
     if isinstance(value, int | float) and not isinstance(value, bool):
         return -_LARGEST <= value <= _LARGEST
     return value is None or isinstance(value, str)

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -209,3 +211,18 @@ def test_refuses_no_regions_and_attempts_before_the_first() -> None:
         make_strategy("eprocess", GOAL).decide(lambda counts: counts, 0, attempt=1)
     with pytest.raises(BanditError, match="attempt 0"):
         make_strategy("eprocess", GOAL).decide(lambda counts: counts, 3, attempt=0)
+
+
+@pytest.mark.parametrize("name", ["beta", "delta"])
+@pytest.mark.parametrize("value", [0.0, 1e-320, 9e-13, 1.0, 2.0, float("nan")])
+def test_goals_whose_numbers_mean_nothing_are_refused(name: str, value: float) -> None:
+    with pytest.raises(BanditError, match=f"{name} is"):
+        Goal(**{"beta": 0.9, "epsilon": 0.02, "delta": 0.05, name: value})
+
+
+@pytest.mark.parametrize("delta", [1e-12, 1e-7, 0.004])
+def test_a_confidence_is_never_rounded_up_to_certainty(delta: float) -> None:
+    goal = Goal(beta=0.5, epsilon=0.3, delta=delta)
+    claim = make_strategy("eprocess", goal).decide(lambda n: 0 * n, 1, attempt=1).claim
+    (level,) = re.findall(r"confidence ([0-9.]+)", claim)
+    assert 1.0 - float(level) == pytest.approx(delta, rel=2e-3)

@@ -249,6 +249,8 @@ def test_every_thing_needs_a_name_of_its_own(model: Path, names: list[str], kind
     ("name", "text", "message"),
     [
         ("gone.obj", None, "there is no such mesh"),
+        ("../", None, "no mesh: it is a folder"),
+        ("/dev/null", None, "no mesh: it is a device or a pipe, not a file"),
         ("part.step", "ISO-10303-21;", "'.step' is no kind of mesh"),
         ("words.obj", "hello\n", "Drake cannot read this mesh"),
         ("line.obj", "v 0 0 0\nv 1 0 0\n", "Drake cannot read this mesh"),
@@ -272,5 +274,5 @@ def test_what_is_no_mesh_is_told_with_its_file_and_place(
 
 
 def test_a_folder_is_no_mesh(model: Path, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="found a folder"):
+    with pytest.raises(ModelError, match="it is a folder"):
         cell_of(model, ObstacleConfig("thing", placed(MeshShape(tmp_path))))

@@ -154,6 +154,14 @@ def change_seed(record: dict) -> None:
     record["seed"] = "3"
 
 
+@pytest.mark.parametrize("text", ["", "[" * 100_000, '{"format":' * 100_000, "[1]", '{"a": 1}'])
+def test_what_is_no_record_is_told(text: str, tmp_path) -> None:
+    (tmp_path / "run.json").write_text(text)
+    with pytest.raises(RunDirectoryError, match=r"damaged|not what a run writes") as error:
+        read_run_record(tmp_path / "run.json")
+    assert error.value.file == tmp_path / "run.json"
+
+
 @pytest.mark.parametrize(
     ("damage", "expected"),
     [

@@ -30,7 +30,9 @@ def test_a_line_that_was_cut_off_is_dropped(tmp_path) -> None:
     assert kept.known(0) == {PLACE: GOOD, OTHER: BAD}
 
 
-@pytest.mark.parametrize("line", ["nonsense", "{}", '{"round": 1, "place": [], "judged": {}}', "3"])
+@pytest.mark.parametrize(
+    "line", ["nonsense", "{}", "[" * 100_000, '{"round": 1, "place": [], "judged": {}}', "3"]
+)
 def test_a_damaged_line_is_told_with_its_number(tmp_path, line: str) -> None:
     kept = KeptExecutions(tmp_path)
     kept.keep(0, PLACE, GOOD)

@@ -143,6 +143,7 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         (with_block("robot", joints=(), start=()), "robot.joints", "at least one joint", ""),
         (with_block("robot", joints=("a", "a")), "robot.joints.1", "'a' is listed twice", ""),
         (with_block("robot", start=(0.0,)), "robot.start", "expected 2 angles", "Joints: a, b"),
+        (with_block("robot", start=()), "robot.start", "expected 2 angles", "Joints: a, b"),
         (
             with_block("robot", parked={"b": 0.0}),
             "robot.parked.b",
@@ -221,7 +222,7 @@ def test_another_robot_may_have_made_the_recordings() -> None:
         ),
         (adaptive(smallest=1.0), "regions.adaptive.smallest", "below 1, found 1.0", "share"),
         (adaptive(smallest=1e-10), "regions.adaptive.smallest", "of at least 1e-09", ""),
-        (adaptive(level=0.0), "regions.adaptive.level", "above 0 and below 1", "noticed"),
+        (adaptive(level=0.0), "regions.adaptive.level", "at least 1e-12 and below 1", "noticed"),
         (
             {**adaptive(), "objects": ({**BOWL.model_dump(), "x": 1},)},
             "regions.adaptive",
@@ -234,8 +235,15 @@ def test_another_robot_may_have_made_the_recordings() -> None:
             "strategy of their own",
             "regions.adaptive",
         ),
-        (with_block("coverage", beta=1.0), "coverage.beta", "above 0 and below 1, found 1.0", ""),
-        (with_block("coverage", delta=0.0), "coverage.delta", "above 0 and below 1", "confidence"),
+        (
+            with_block("coverage", beta=1.0),
+            "coverage.beta",
+            "at least 1e-12 and below 1, found 1.0",
+            "",
+        ),
+        (with_block("coverage", delta=0.0), "coverage.delta", "at least 1e-12 and below 1", ""),
+        (with_block("coverage", delta=1e-320), "coverage.delta", "at least 1e-12", ""),
+        (with_block("coverage", beta=1e-320), "coverage.beta", "at least 1e-12", ""),
         (
             with_block("coverage", epsilon=0.0),
             "coverage.epsilon",

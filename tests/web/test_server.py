@@ -77,6 +77,8 @@ def test_messages_arrive_in_order(server) -> None:
         (b"n=1", "application/x-www-form-urlencoded", 415),
         (b"{", "application/json", 400),
         (b"[1]", "application/json", 400),
+        (b"[" * 9000, "application/json", 400),
+        (b'{"a": ' + b"[" * 900 + b"1" + b"]" * 900 + b"}", "application/json", 400),
     ],
 )
 def test_other_messages_are_refused(server, content, kind, code) -> None:
