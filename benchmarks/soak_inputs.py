@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -86,7 +87,8 @@ def _library(rng: Random, originals: Path) -> list[str]:
                 "joint_angles.csv",
             ),
         )
-        inside = Path.cwd() in extra.resolve().parents  # a broken place may lead out of here
+        # A broken place may lead out of here, or round in circles.
+        inside = Path.cwd() in Path(os.path.realpath(extra)).parents
         if inside and extra.parent.is_dir() and not extra.exists() and not extra.is_symlink():
             extra.write_text(word(rng), errors="replace")
     commands = (["check", "full.yaml"], ["look", "library", "--scenario", "full.yaml"])

@@ -179,6 +179,8 @@ def _names(arguments: list[str]) -> Iterator[str]:
         "arm.sdf",
         "'part'",
         "'jug'",
+        "'os:system'",
+        "error: /: ",
     )
     for argument in arguments[1:]:
         if not argument.startswith("--"):

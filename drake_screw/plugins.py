@@ -162,9 +162,10 @@ def _guarded(part: Callable[..., Any], what: str) -> Callable[..., Any]:
             raise
         except Exception as error:
             place = traceback.extract_tb(error.__traceback__)[-1]
+            where = f"In {place.filename}:{place.lineno}. " if place.filename != __file__ else ""
             raise PluginError(
                 f"{what} raised {type(error).__name__}: {error}",
-                remedy=f"In {place.filename}:{place.lineno}. --verbose shows the way there.",
+                remedy=f"{where}--verbose shows the way there.",
             ) from error
 
     return call

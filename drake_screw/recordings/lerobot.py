@@ -51,12 +51,18 @@ def read_lerobot(
             episode = np.array(frames["episode_index"].to_pylist(), dtype=np.int64)
             time = np.array(frames["timestamp"].to_pylist(), dtype=float)
             state = np.array(frames[STATE].to_pylist(), dtype=float)
-        if len(state) and state.ndim != 2:
-            raise RecordingError(
-                f"{STATE} is not a list of numbers in each row",
-                remedy="Expected a number for each joint.",
-                file=file,
-            )
+        for name, values, dimensions in (
+            (STATE, state, 2),
+            ("timestamp", time, 1),
+            ("episode_index", episode, 1),
+        ):
+            if len(values) and values.ndim != dimensions:
+                what = "a number" if dimensions == 1 else "a list of numbers"
+                raise RecordingError(
+                    f"{name} is not {what} in each row",
+                    remedy="Expected frames as LeRobot writes them, a row for each.",
+                    file=file,
+                )
         for number in np.unique(episode).tolist():
             rows = episode == number
             found.setdefault(number, []).append((time[rows], state[rows]))

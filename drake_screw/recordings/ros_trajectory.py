@@ -73,7 +73,7 @@ def _raw(name: str, trajectory: dict[str, Any], source: Path) -> Raw:
         try:
             time = _seconds(point[_TIME])
             rows.append([time, *map(float, point["positions"])])
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise RecordingError(
                 f"point {i + 1} of the trajectory has no {_TIME} and positions that are numbers",
                 remedy="Expected time_from_start: {sec, nanosec} and positions: [...].",

@@ -68,7 +68,7 @@ class Catalogue:
     def nearest_to(self, x: float, y: float) -> int | None:
         """The place of the instance nearest to a point of the map, those that fail first.
 
-        x and y are along the map's axes, upwards and to the left. An instance that succeeds is
+        x and y are along the map's axes, its first and its second. An instance that succeeds is
         taken only where none that fails is within 0.03 (m or rad).
         """
         (i, a), (j, b) = self.axes

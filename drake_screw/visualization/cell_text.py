@@ -13,6 +13,8 @@ from drake_screw.visualization.palette import failure_color, ink_on
 from drake_screw.visualization.rounds import Round
 
 LEAST_TEXT = 4.0
+LEAST_COUNTS = 5.0
+"""Points: smaller, nobody reads the counts, and the estimate has their room."""
 MARK = 11.0
 """Diameter in points of the mark of a demonstration."""
 
@@ -34,9 +36,12 @@ def write_estimates(ax: Axes, drawn: Cells, event: Round, *, mean: bool = False)
         corners = ax.transData.transform([drawn.lower[cell][::-1], drawn.upper[cell][::-1]])
         width, height = np.abs(corners[1] - corners[0]) * points
         size = min(0.26 * height, 0.17 * width, 15.0)
+        below = 0.6 * size >= LEAST_COUNTS and not mean
+        if not below:
+            size = min(0.4 * height, 0.2 * width, 15.0)
         if size < LEAST_TEXT:
             continue
-        text = np.array([1.1 * size / height, 1.75 * size / width])
+        text = np.array([(1.1 if below else 0.65) * size / height, 1.95 * size / width])
         gap = text + MARK / 2.0 / np.array([height, width])
         x, y = _clear_spot(drawn.lower[cell], drawn.upper[cell], marks, text, gap)
         value = float(drawn.mean[cell] if mean else verdict.estimates[region])
@@ -45,7 +50,6 @@ def write_estimates(ax: Axes, drawn: Cells, event: Round, *, mean: bool = False)
         style = {"color": ink_on(background), "ha": "center", "zorder": 6, "bbox": behind}
         known = not np.isnan(value) and (mean or verdict.samples[region] > 0)
         estimate = f"{value:.3f}" if known else "?"
-        below = 0.6 * size >= LEAST_TEXT and not mean
         align = "bottom" if below else "center"
         ax.text(y, x, estimate, fontsize=size, fontweight="bold", va=align, **style)
         if below:

@@ -14,7 +14,7 @@ Axis = tuple[int, int]
 """An object and one of its axes, by number."""
 
 Axes = tuple[Axis, Axis]
-"""Those of a picture: upwards and sideways."""
+"""Those of a picture: up or down it, and sideways."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Cells:
 
     @property
     def object(self) -> int:
-        """Index of the object whose axis is drawn upwards."""
+        """Index of the object whose axis is drawn up or down."""
         return self.axes[0][0]
 
     @property

@@ -1,6 +1,7 @@
-"""Where plans fail: the work area from above, as a person behind the robot's head sees it.
+"""Where plans fail: the work area from above, as a person sees it who looks at the robot.
 
-x grows upwards, away from the robot; y grows to the left, as it does for the robot.
+The robot is at the top: x grows downwards, away from it, and y to the right, its left, as in the
+3-D view and on the pages' maps.
 """
 
 from __future__ import annotations
@@ -45,6 +46,8 @@ SHAPES = {
     Cause.EXECUTION: ("v", 4.0),
 }
 GRID = "#b9b4c6"
+ROBOT = 9.0
+"""Points that the robot's mark and name take up above a map."""
 EDGE = np.array([-1e-9, 1e-9])
 """m, that the numbers of a place at the edge of the area may be beyond it by rounding."""
 
@@ -140,17 +143,16 @@ def extent(drawn: Cells, things: Sequence[Outline] = ()) -> tuple[Array, Array]:
 def _frame(ax: Axes, drawn: Cells, frame: tuple[Array, Array]) -> None:
     lower, upper = frame
     pad = np.where(upper > lower, 0.0, 0.05)
-    ax.set_xlim(upper[1] + pad[1], lower[1] - pad[1])
+    ax.set_xlim(lower[1] - pad[1], upper[1] + pad[1])
     ax.set_ylim(lower[0] - pad[0], upper[0] + pad[0])
     if drawn.from_above:
         ax.set_aspect("equal")
-    else:
-        ax.invert_xaxis()
-    sideways, upwards = drawn.label(1), drawn.label(0)
+        ax.invert_yaxis()
+    sideways, along = drawn.label(1), drawn.label(0)
     if drawn.in_world:
-        sideways, upwards = "← to the robot's left      y in m", "x in m      away from the robot →"
+        sideways, along = "y in m      to the robot's left →", "← away from the robot      x in m"
     ax.set_xlabel(sideways, fontsize=9, color=INK)
-    ax.set_ylabel(upwards, fontsize=9, color=INK)
+    ax.set_ylabel(along, fontsize=9, color=INK)
     ax.tick_params(labelsize=8)
 
 
@@ -209,10 +211,10 @@ def _draw_robot(ax: Axes, text: bool) -> None:
     x = float(np.clip(0.0, *sorted(ax.get_ylim())))
     if x == 0.0 and y == 0.0:
         return
-    towards = (3, 0, np.degrees(np.arctan2(-y, -x)))
+    towards = (3, 0, np.degrees(np.arctan2(y, x)))
     look = {"marker": towards, "markersize": 9 if text else 5, "color": INK}
     ax.plot(y, x, zorder=7, clip_on=False, gid="robot", **look)
     if text:
-        offset = {"xytext": (8, 4), "textcoords": "offset points"}
+        offset = {"xytext": (8, 3), "textcoords": "offset points"}
         halo = [withStroke(linewidth=2.0, foreground=PAPER)]
         ax.annotate("robot", (y, x), fontsize=8, color=INK, zorder=7, path_effects=halo, **offset)

@@ -13,6 +13,7 @@ from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.cells import Cells, cells
 from drake_screw.visualization.heat_map import (
+    ROBOT,
     add_colour_bar,
     draw_heat_map,
     extent,
@@ -23,8 +24,8 @@ from drake_screw.visualization.palette import INK
 from drake_screw.visualization.round_figure import beyond_the_plane
 from drake_screw.visualization.rounds import Round
 
-DOTS = 600
-WIDTH, LEFT, RIGHT, BOTTOM, TOP = 5.6, 0.7, 0.85, 1.4, 0.45  # inches
+DOTS = 250
+WIDTH, LEFT, RIGHT, BOTTOM, TOP = 5.6, 0.7, 0.85, 1.4, 0.6  # inches
 LEGEND = 0.5  # inches from the map down to it
 MOST_HEIGHT = 5.6  # inches
 
@@ -85,9 +86,9 @@ def _figure(one: MapOf, drawn: Cells, frame: tuple[Array, Array], title: str) ->
         ax, one.event, one.regions, dots=DOTS, things=one.things, axes=drawn.axes, frame=frame
     )
     words = beyond_the_plane(drawn, one.regions)
-    ax.set_title(title, fontsize=11, fontweight="bold", loc="left", color=INK, pad=18.0)
+    ax.set_title(title, fontsize=11, fontweight="bold", loc="left", color=INK, pad=18.0 + ROBOT)
     if words:
-        place = {"xytext": (0, 5), "textcoords": "offset points", "va": "bottom"}
+        place = {"xytext": (0, 5 + ROBOT), "textcoords": "offset points", "va": "bottom"}
         ax.annotate(words, (0, 1), xycoords="axes fraction", fontsize=8, color=INK, **place)
     add_colour_bar(figure, ax.inset_axes((1.02, 0.0, 0.03, 1.0)))
     figure.legend(

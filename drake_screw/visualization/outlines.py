@@ -66,7 +66,7 @@ def widened(
 
 
 def draw_outlines(ax: Axes, things: Sequence[Outline], *, text: bool = True) -> None:
-    """Draw things seen from above, hatched, into axes with y to the left and x upwards.
+    """Draw things seen from above, hatched, into axes with y to the right and x downwards.
 
     Args:
         ax: with its limits set.

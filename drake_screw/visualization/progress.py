@@ -17,6 +17,7 @@ from drake_screw.visualization.cells import Axes as PlaneAxes
 from drake_screw.visualization.cells import cells
 from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
+    ROBOT,
     add_colour_bar,
     draw_heat_map,
     extent,
@@ -114,10 +115,10 @@ def run_figure(
     lower, upper = extent(drawn, things)
     depth, width = upper - lower
     shape = float(depth / max(width, 1e-9)) if drawn.from_above else 0.6
-    columns = _columns(len(events), shape)
+    columns = {1: 2, 4: 2}.get(len(events), min(len(events), COLUMNS))
     rows, left = -(-len(events) // columns), -len(events) % columns
     row = float(np.clip((WIDTH - 1.4) / columns * shape, 0.9, 4.2)) + 0.65
-    heights = [row] * rows + ([] if left else [1.8 if len(events) == 1 else 2.6])
+    heights = [row] * rows + ([] if left else [2.6])
     heights[-1] = max(heights[-1], 2.6) if left else heights[-1]
     figure = Figure(figsize=(WIDTH, sum(heights) + 1.1), layout="constrained")
     grid = figure.add_gridspec(
@@ -127,16 +128,18 @@ def run_figure(
         width_ratios=[1] * columns + [0.03],
     )
     shown: list[tuple[Round, Sample]] = []
+    alone = len(events) == 1
     stacked, several = False, len(drawn.area.objects) > 1 and drawn.from_above
     for i, event in enumerate(events):
         ax = figure.add_subplot(grid[i // columns, i % columns])
         parts = regions[i]
-        look = draw_heat_map(ax, event, parts, dots=DOTS, text=False, things=things, axes=axes)
+        look = draw_heat_map(ax, event, parts, dots=DOTS, text=alone, things=things, axes=axes)
         stacked |= cells(parts, event.verdict.estimates, axes).stack > 1
         shown.append((event, look))
         count = len(event.demonstrations)
         title = f"round {event.round + 1}: {count} demonstration{'' if count == 1 else 's'}"
-        ax.set_title(title, fontsize=9, color=INK)
+        pad = 6.0 + (ROBOT if drawn.in_world and alone else 0.0)
+        ax.set_title(title, fontsize=9, color=INK, pad=pad)
         ax.tick_params(labelsize=7)
         ax.set_xlabel(drawn.label(1), fontsize=7.5, color=INK)
         ax.set_ylabel(drawn.label(0), fontsize=7.5, color=INK)
@@ -159,13 +162,6 @@ def run_figure(
         title_fontsize=8.5,
     )
     return figure
-
-
-def _columns(rounds: int, shape: float) -> int:
-    """How many maps, of so much height for a unit of width, are beside one another."""
-    if rounds == 1:
-        return 1 if shape < 0.5 else 2
-    return rounds if rounds <= COLUMNS else 2 if rounds == 4 else COLUMNS
 
 
 def save_run_figure(

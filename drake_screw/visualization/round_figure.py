@@ -18,6 +18,7 @@ from drake_screw.visualization.cells import Cells, cells, usual_axes
 from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
     MOST_DOTS,
+    ROBOT,
     add_colour_bar,
     draw_heat_map,
     extent,
@@ -104,13 +105,15 @@ def _one_map(
     things, height = look["things"], _height(drawn, look["things"], 7.6)
     caption = fill(_caption(event, regions, drawn), 120)
     height += 0.2 * caption.count("\n") + (0.3 if things else 0.0)
-    figure = Figure(figsize=(9.6, height + 1.6), layout="constrained")
+    figure = Figure(figsize=(9.6, height + 1.6 + ROBOT / 72.0), layout="constrained")
     ax = figure.add_subplot()
     figure.get_layout_engine().execute(figure)
     shown = draw_heat_map(ax, event, regions, **look, axes=drawn.axes)
     blank = "\n" * (1 + caption.count("\n"))
-    ax.set_title(title + blank, fontsize=12, fontweight="bold", loc="left", color=INK)
-    offset = {"xytext": (0, 6), "textcoords": "offset points", "va": "bottom"}
+    room = ROBOT if drawn.in_world else 0.0
+    look_of_title = {"fontsize": 12, "fontweight": "bold", "loc": "left", "color": INK}
+    ax.set_title(title + blank, **look_of_title, pad=6.0 + room)
+    offset = {"xytext": (0, 6 + room), "textcoords": "offset points", "va": "bottom"}
     ax.annotate(caption, (0, 1), xycoords="axes fraction", fontsize=8.5, color=INK, **offset)
     add_colour_bar(figure, ax.inset_axes((1.015, 0.0, 0.02, 1.0)))
     return figure, shown
@@ -165,7 +168,8 @@ def _panel(
     shown = draw_heat_map(ax, event, regions, **look, axes=drawn.axes)
     names = list(dict.fromkeys(drawn.area.objects[i].name for i, _ in drawn.axes))
     place = f"{listed(names)}: " if len(drawn.area.objects) > 1 else ""
-    ax.set_title(fill(place + text, 70), fontsize=9, loc="left", color=INK)
+    pad = 6.0 + (ROBOT if drawn.in_world else 0.0)
+    ax.set_title(fill(place + text, 70), fontsize=9, loc="left", color=INK, pad=pad)
     return shown
 
 

@@ -167,6 +167,8 @@ STATE = "observation.state"
         ({"episode_index": [None] * 40}, "cannot be read as frames"),
         ({"timestamp": ["now"] * 40}, "cannot be read as frames"),
         ({"timestamp": None}, "cannot be read as frames"),
+        ({"timestamp": [[0.0] * 7] * 40}, "timestamp is not a number in each row"),
+        ({"episode_index": [[0] * 7] * 40}, "episode_index is not a number in each row"),
         ({}, None),
     ],
 )

@@ -76,6 +76,7 @@ def test_several_are_several(setup: Setup, tmp_path: Path) -> None:
         (echoed().replace("    sec: 0\n", "", 1), "point 1 of the trajectory has no time_from"),
         (echoed().replace("  - 0.500000\n", "", 1), "point 1 .* has 6 positions for 7 joints"),
         (echoed().replace("- 0.520000", "- fast", 1), "point 2 of the trajectory has no"),
+        (echoed().replace("- 0.520000", f"- 1{'0' * 400}", 1), "point 2 of the trajectory has no"),
     ],
 )
 def test_what_is_none_is_refused(text: str, message: str, setup: Setup, tmp_path: Path) -> None:

@@ -68,10 +68,10 @@ def test_a_region_without_samples_is_marked_unknown(ax, make_round, regions) -> 
     assert "?" in texts(ax)
 
 
-def test_it_looks_as_from_behind_the_robots_head(ax, make_round, regions) -> None:
+def test_it_lies_as_the_3d_view_does_with_the_robot_at_the_top(ax, make_round, regions) -> None:
     draw_heat_map(ax, make_round(regions, FAILURES), regions)
-    left, low = ax.transData.transform((0.9, 0.6))
-    right, high = ax.transData.transform((-0.3, 1.0))
+    left, low = ax.transData.transform((-0.3, 1.0))
+    right, high = ax.transData.transform((0.9, 0.6))
     assert left < right
     assert low < high
     assert abs((right - left) / 1.2 - (high - low) / 0.4) < 1e-6
