@@ -62,7 +62,7 @@ def main() -> None:
                 ax.fill([y0, y1, y1, y0], [x0, x0, x1, x1], color=tuple(color))
                 middle = (y0 + y1) / 2, (x0 + x1) / 2
                 ax.text(*middle, f"{value:.2f}", ha="center", va="center", color=ink_on(color))
-            ax.invert_xaxis()
+            ax.invert_yaxis()
             ax.set_aspect("equal")
             ax.set_title(f"{title}: {kind}", fontsize=10)
             ax.set_xlabel("y in m", fontsize=8)

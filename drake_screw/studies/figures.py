@@ -13,19 +13,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import PercentFormatter
 
 from drake_screw.tasks import GridRegions
 from drake_screw.visualization.cells import cells
 from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
+    ROBOT,
     add_colour_bar,
     draw_heat_map,
     extent,
     legend_handles,
 )
 from drake_screw.visualization.outlines import Outline
-from drake_screw.visualization.palette import INK, failure_map
+from drake_screw.visualization.palette import INK, PAPER, failure_map
 from drake_screw.visualization.rounds import Round
 
 DOTS = 700
@@ -73,7 +75,8 @@ def draw_distribution(ax: Axes, distribution: Distribution) -> None:
     shares = [count / distribution.runs for count in found.values()]
     bars = ax.bar(list(found), shares, width=0.8, color=failure_map()(0.75))
     labels = [f"{share:.1%}" if share < 0.0995 else f"{share:.0%}" for share in shares]
-    ax.bar_label(bars, labels, fontsize=7, padding=1, color=INK)
+    halo = [withStroke(linewidth=2.5, foreground=PAPER)]
+    ax.bar_label(bars, labels, fontsize=7, padding=1, color=INK, zorder=3, path_effects=halo)
     text = []
     if found:
         ax.axvline(distribution.mean, color=INK, linestyle="--", linewidth=1.0, gid="mean")
@@ -143,7 +146,7 @@ def comparison_figure(
     lower, upper = extent(seen, things)
     depth, width = upper - lower
     height = float(np.clip(4.8 * depth / max(width, 1e-9), 1.6, 4.8))
-    figure = Figure(figsize=(11.0, height + 1.9), layout="constrained")
+    figure = Figure(figsize=(11.0, height + 1.9 + ROBOT / 72.0), layout="constrained")
     grid = figure.add_gridspec(1, 3, width_ratios=[1, 1, 0.03])
     handles: dict[object, Line2D | Patch] = {}
     for i, (event, parts) in enumerate(zip(rounds, regions, strict=True)):
@@ -151,7 +154,8 @@ def comparison_figure(
         figure.get_layout_engine().execute(figure)
         shown = draw_heat_map(ax, event, parts, dots=DOTS, things=things)
         handles |= {h.get_label(): h for h in legend_handles(event, shown, things)}
-        ax.set_title(_headline(event, parts), fontsize=10, color=INK, loc="left")
+        pad = 6.0 + (ROBOT if seen.in_world else 0.0)
+        ax.set_title(_headline(event, parts), fontsize=10, color=INK, loc="left", pad=pad)
     add_colour_bar(figure, figure.add_subplot(grid[2]))
     count = len(rounds[0].demonstrations)
     title = f"{scenario}: " if scenario else ""
