@@ -120,7 +120,8 @@ def main() -> None:
                 ax.text(*middle, f"{value:.2f}", ha="center", va="center", color=ink, fontsize=8)
             arm = "both arms" if who == "both" else f"{who} arm"
             ax.set_title(f"{name}: {arm}, {1 - rate.mean():.1%} covered", fontsize=9)
-            ax.set_xlim(0.8, -0.8)
+            ax.set_xlim(-0.8, 0.8)
+            ax.invert_yaxis()
             ax.set_aspect("equal")
             ax.set_xlabel("y in m", fontsize=8)
             ax.set_ylabel("x in m", fontsize=8)

@@ -33,6 +33,9 @@ QUICK = (
 )
 """Changes of scenario pouring with which a run has several rounds and soon ends."""
 
+MOST = 12
+"""Kills after which it is let end: where all is begun anew each time, it may never by itself."""
+
 SAME_OF_RUN = ("status", "reason", "certificate", "demonstrations", "rounds")
 SAME_OF_STUDY = ("status", "regions", "runs")
 ENDED = b"has ended"
@@ -158,7 +161,7 @@ def trial(
         command = [*DRAKE_SCREW, *arguments]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as going:
             try:
-                output, _ = going.communicate(timeout=seconds())
+                output, _ = going.communicate(timeout=seconds() if kills < MOST else None)
             except subprocess.TimeoutExpired:
                 going.kill()
                 kills += 1

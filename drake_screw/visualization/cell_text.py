@@ -29,7 +29,7 @@ def write_estimates(ax: Axes, drawn: Cells, event: Round, *, mean: bool = False)
         mean: write the mean of the regions above one another, which has no counts.
     """
     ax.apply_aspect()
-    marks = _marks(drawn, event)
+    marks = marked_places(drawn, event)
     verdict = event.verdict
     points = 72.0 / ax.get_figure().dpi
     for cell, region in enumerate(drawn.region):
@@ -43,7 +43,7 @@ def write_estimates(ax: Axes, drawn: Cells, event: Round, *, mean: bool = False)
             continue
         text = np.array([(1.1 if below else 0.65) * size / height, 1.95 * size / width])
         gap = text + MARK / 2.0 / np.array([height, width])
-        x, y = _clear_spot(drawn.lower[cell], drawn.upper[cell], marks, text, gap)
+        x, y = clear_spot(drawn.lower[cell], drawn.upper[cell], marks, text, gap)
         value = float(drawn.mean[cell] if mean else verdict.estimates[region])
         background = failure_color(value)
         behind = {"boxstyle": "round,pad=0.1", "fc": tuple(background), "lw": 0, "alpha": 0.9}
@@ -57,7 +57,7 @@ def write_estimates(ax: Axes, drawn: Cells, event: Round, *, mean: bool = False)
             ax.text(y, x, counts, fontsize=0.6 * size, va="top", **style)
 
 
-def _marks(drawn: Cells, event: Round) -> Array:
+def marked_places(drawn: Cells, event: Round) -> Array:
     """(m, 2) x, y of what must not lie under text."""
     places = [drawn.place_of(d.X_WO) for d in event.demonstrations]
     if event.suggestion is not None:
@@ -65,7 +65,7 @@ def _marks(drawn: Cells, event: Round) -> Array:
     return np.array(places).reshape(-1, 2)
 
 
-def _clear_spot(lower: Array, upper: Array, marks: Array, text: Array, gap: Array) -> Array:
+def clear_spot(lower: Array, upper: Array, marks: Array, text: Array, gap: Array) -> Array:
     """x, y for the text of a cell: its middle, or another place if a mark is too near.
 
     Args:

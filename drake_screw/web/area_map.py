@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from markupsafe import Markup, escape
+from markupsafe import Markup
 from matplotlib.colors import to_hex
-from matplotlib.ticker import MaxNLocator
 
 from drake_screw.errors import listed
 from drake_screw.planning import Cause
 from drake_screw.tasks import Regions, Symmetry
 from drake_screw.typing import Array
+from drake_screw.visualization.cell_text import clear_spot, marked_places
 from drake_screw.visualization.cells import Cells, cells
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import (
@@ -26,54 +25,13 @@ from drake_screw.visualization.palette import (
 )
 from drake_screw.visualization.rim_marks import mark_angles
 from drake_screw.visualization.rounds import Round, Sample, sample
+from drake_screw.web.map_frame import Frame, draw_axes, frame_of
 
 MAP_DOTS = 2_000
-WIDTH, HEIGHT = 360.0, 150.0
-"""Units of the drawing that the work area fits into; text is 11 of them high."""
 TOKEN, HERE = 8.0, 11.0
 """Radii of marks."""
 BEYOND = 30.0
 """Units that a mark may lie beside the work area and still be drawn."""
-
-
-@dataclass(frozen=True)
-class Frame:
-    """Where the plane of the cells lies in the drawing: u to the right and v down.
-
-    Seen from above with the robot at the top y grows to the right and x downwards, as they do in
-    the 3-D view, whose camera looks at the robot. Other planes are drawn as a chart is, their
-    first axis upwards.
-
-    Attributes:
-        corner: (2,) of the plane, m or rad, at u = v = 0.
-        scale: (2,) units of the drawing for one of either axis; negative where it grows against
-            the drawing.
-        size: (2,) of the drawing, v and u.
-    """
-
-    corner: Array
-    scale: Array
-    size: Array
-
-    def place(self, points: Array) -> Array:
-        """(..., 2) of the plane to (..., 2) u, v."""
-        return ((np.asarray(points) - self.corner) * self.scale)[..., ::-1]
-
-    def direction(self, angle: float) -> Array:
-        """(2,) u, v of the unit vector at an angle from the first axis to the second, rad."""
-        way = np.array([np.cos(angle), np.sin(angle)]) * np.sign(self.scale)
-        return way[::-1]
-
-
-def frame_of(drawn: Cells) -> Frame:
-    """The largest that fits; in proportion where both axes are lengths of one object."""
-    lower, upper = drawn.lower.min(axis=0), drawn.upper.max(axis=0)
-    span = np.maximum(upper - lower, 1e-3)
-    scale = np.array([HEIGHT, WIDTH]) / span
-    if drawn.from_above:
-        scale = np.full(2, scale.min())
-        return Frame(lower, scale, span * scale)
-    return Frame(np.array([upper[0], lower[1]]), scale * [-1.0, 1.0], span * scale)
 
 
 def work_area_map(
@@ -105,8 +63,8 @@ def work_area_map(
     known = symmetries[drawn.object] if symmetries else None
     parts = [*_cells(drawn, event, frame), *_dots(drawn, event, frame, dots)]
     parts += _things(drawn, frame, things)
-    parts += _rates(drawn, event, frame)
-    parts += _axes(drawn, frame)
+    parts += _rates(drawn, event, frame, here)
+    parts += draw_axes(drawn, frame)
     shown: list[Array] = []
     for number, demonstration in enumerate(event.demonstrations, start=1):
         given = drawn.area.coordinates(demonstration.X_WO)
@@ -160,14 +118,21 @@ def _cells(drawn: Cells, event: Round, frame: Frame) -> Iterable[str]:
         )
 
 
-def _rates(drawn: Cells, event: Round, frame: Frame) -> Iterable[str]:
-    """What part fails, in cells in which something does and that have room for it."""
+def _rates(drawn: Cells, event: Round, frame: Frame, here: Array | None) -> Iterable[str]:
+    """What part fails, beside marks, in cells in which something does and that have room for it."""
+    marks = marked_places(drawn, event)
+    if here is not None:
+        marks = np.concatenate([marks, drawn.place(here)[None]])
     for cell, region in enumerate(drawn.region):
         ends = frame.place(np.array([drawn.lower[cell], drawn.upper[cell]]))
         rate = event.verdict.estimates[region]
         if not rate > 0.0 or (np.ptp(ends, axis=0) < [34.0, 14.0]).any():
             continue
-        (u, v), color = ends.mean(axis=0), failure_color(rate)
+        width, height = np.ptp(ends, axis=0)
+        text = np.array([4.0 / height, 3.4 * len(_percent(rate)) / width])
+        gap = text + HERE / np.array([height, width])
+        spot = clear_spot(drawn.lower[cell], drawn.upper[cell], marks, text, gap)
+        (u, v), color = frame.place(spot), failure_color(rate)
         halo = PAPER if ink_on(color) == INK else INK
         yield (
             f'<text x="{u:.1f}" y="{v + 4.0:.1f}" text-anchor="middle" fill="{ink_on(color)}" '
@@ -192,56 +157,6 @@ def _things(drawn: Cells, frame: Frame, things: Sequence[Outline]) -> Iterable[s
             f'<polygon points="{edge}" fill="{PAPER}" fill-opacity="0.45" stroke="{INK}" '
             f'stroke-width="1.5" pointer-events="none" class="obstacle"/>'
         )
-
-
-def _axes(drawn: Cells, frame: Frame) -> Iterable[str]:
-    """Ticks at round numbers with their unit, the axes' names, and where the robot is."""
-    (low, high), (height, width) = (drawn.lower.min(axis=0), drawn.upper.max(axis=0)), frame.size
-    names = [drawn.label(0), drawn.label(1)]
-    for axis in (0, 1):
-        most = int(np.clip(frame.size[axis] // (24.0 if axis == 0 else 48.0), 1, 6))
-        ticks = MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]).tick_values(low[axis], high[axis])
-        for tick in ticks[(ticks >= low[axis] - 1e-9) & (ticks <= high[axis] + 1e-9)]:
-            text = _number(tick, ticks)
-            at = (tick - frame.corner[axis]) * frame.scale[axis]
-            if axis == 0:
-                yield (
-                    f'<path d="M0 {at:.1f}h-4" class="tick"/><text x="-6" y="{at + 4.0:.1f}" '
-                    f'text-anchor="end" class="tick-name">{text}</text>'
-                )
-            else:
-                yield (
-                    f'<path d="M{at:.1f} {height:.1f}v4" class="tick"/><text x="{at:.1f}" '
-                    f'y="{height + 15.0:.1f}" text-anchor="middle" class="tick-name">{text}</text>'
-                )
-    yield (
-        f'<text x="{width / 2.0:.1f}" y="{height + 29.0:.1f}" text-anchor="middle" '
-        f'class="axis-name">{escape(names[1])} →</text>'
-        f'<text transform="translate(-34 {height / 2.0:.1f}) rotate(-90)" text-anchor="middle" '
-        f'class="axis-name">{escape("← " + names[0] if frame.scale[0] > 0 else names[0] + " →")}'
-        "</text>"
-    )
-    if drawn.in_world:
-        yield from _robot(frame)
-
-
-def _robot(frame: Frame) -> Iterable[str]:
-    """A triangle outside the edge nearest to the robot's base, the world's origin, or on it."""
-    base = frame.place(np.zeros(2))
-    size = frame.size[::-1]
-    edge = np.clip(base, 0.0, size)
-    way = base - edge
-    away = np.linalg.norm(way)
-    way = way / away if away > 0.0 else np.array([0.0, -1.0])
-    tip, across = edge + (12.0 * way if away > 0.0 else 0.0), np.array([-way[1], way[0]])
-    corners = [tip, tip - 10.0 * way + 5.0 * across, tip - 10.0 * way - 5.0 * across]
-    points = " ".join(f"{u:.1f},{v:.1f}" for u, v in corners)
-    end = tip[0] > size[0] - 40.0
-    yield (
-        f'<polygon points="{points}" fill="{INK}" class="robot"/><text x="'
-        f'{tip[0] + (-9.0 if end else 9.0):.1f}" y="{tip[1] + 6.0:.1f}" '
-        f'text-anchor="{"end" if end else "start"}" class="axis-name">robot</text>'
-    )
 
 
 def _token(at: Array, number: int) -> str:
@@ -285,12 +200,6 @@ def _rim(
             f'<path d="M{u:.1f} {v:.1f}L{w:.1f} {z:.1f}" stroke="{INK}" stroke-width="3" '
             'class="turn"/>'
         )
-
-
-def _number(tick: float, ticks: Array) -> str:
-    """A tick with as many decimals as any of them needs."""
-    decimals = max(len(f"{abs(t):.4f}".rstrip("0").partition(".")[2]) for t in ticks)
-    return f"{tick + 0.0 if abs(tick) > 1e-9 else 0.0:.{decimals}f}".replace("-", "−")
 
 
 def _percent(rate: float) -> str:

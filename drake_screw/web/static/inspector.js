@@ -241,6 +241,6 @@ element("slider").oninput = (event) => { stop(); show_sample(Number(event.target
 element("near").onclick = () => drawn() && look(0.75);
 element("far").onclick = () => drawn() && look(1.9);
 for (const box of document.querySelectorAll("#key input")) box.onchange = () => drawn() && show_sample(sample);
-if (innerWidth < 1100) element("key").open = false;
+if (innerWidth < 1280) element("key").open = false;
 window.dispatchEvent(new Event("resize"));
 if (saved_state) update(saved_state); else listen(update);
