@@ -34,15 +34,17 @@ from drake_screw.web.area_map import map_words, work_area_map
 from drake_screw.web.charts import joint_curves, reach_curves, strip
 from drake_screw.web.selection import Selection, steps
 
-KEY = (
+PLAN_KEY = (
     (STATUS_COLORS[DONE], "screw segment done"),
     (STATUS_COLORS[FAILED], "failed: the segment, the arm's ghost, the joint or what touches"),
     (STATUS_COLORS[AHEAD], "never reached"),
     (AXIS, "screw axis; the arrow around it is its turn"),
     (ACCENT, "where the guiding pose asks for the wrist"),
-    (COPY, "the arm with the demonstration beside"),
 )
 """What the colours of a drawn attempt mean."""
+
+KEY = (*PLAN_KEY, (COPY, "the arm with the demonstration beside"))
+"""And those of another beside it."""
 
 
 def panel_state(

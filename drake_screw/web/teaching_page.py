@@ -20,7 +20,7 @@ from drake_screw.visualization.look_scene import clear_path
 from drake_screw.visualization.meshcat_page import render
 from drake_screw.visualization.palette import ACCENT, INK
 from drake_screw.web.inbox import Inbox
-from drake_screw.web.inspector_panel import KEY
+from drake_screw.web.inspector_panel import PLAN_KEY
 from drake_screw.web.led_arm import PERIOD, TAKEN_BACK
 from drake_screw.web.offer import as_state
 from drake_screw.web.server import PanelServer
@@ -28,6 +28,13 @@ from drake_screw.web.teaching_session import TeachingSession
 
 UPDATE_PERIOD = 0.06
 """s. Between states of the panel while the arm moves."""
+
+
+AT_WORK = {
+    "message": "cutting it into screws and planning; the first time this may take a minute",
+    "can": [],
+}
+"""What the panel says before a recording is planned; the arm's planner may have to be compiled."""
 
 
 def _print(text: str) -> None:
@@ -86,7 +93,7 @@ class TeachingPage:
         setup, meshcat = self._setup, page_meshcat(self._host)
         self._scene = make_scene(setup, meshcat)
         self._inspector = Inspector(meshcat, setup.workcells, setup.objects)
-        key = ((ACCENT, "demonstrate here"), (INK, "the hand's path as recorded"), *KEY)
+        key = ((ACCENT, "demonstrate here"), (INK, "the hand's path as recorded"), *PLAN_KEY)
         look: dict[str, Any] = {"accent": ACCENT, "axes": AXES, "back": f"{TAKEN_BACK:g}"}
         panel = render("drake_screw.web", "teaching.html.j2", key=key, **look)
         self._title = f"{setup.scenario.name}: teach"
@@ -117,6 +124,8 @@ class TeachingPage:
         updated, changed, due = 0.0, True, time.monotonic()
         while not session.over:
             while (message := self._server.message(max(0.0, due - time.monotonic()))) is not None:
+                if session.is_to_plan(message):
+                    self._server.show(session.state() | AT_WORK)
                 session.handle(message)
                 changed = True
             due = max(due, time.monotonic() - PERIOD) + PERIOD
@@ -173,6 +182,8 @@ class TeachingPage:
         folder = None if self._inbox is None else self._inbox.take()
         if folder is None:
             return False
+        assert self._server is not None
+        self._server.show(session.state() | AT_WORK)
         words = session.offer_folder(folder)
         todo = "correct it, or drop another" if session.leading else "accept or repeat it"
         self._announce(f"{words}\n{todo}: {self.url}")

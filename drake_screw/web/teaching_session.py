@@ -114,6 +114,10 @@ class TeachingSession:
                 if 0 <= joint < self._arm.n and isfinite(value):
                     self.led.want_joint(joint, value)
 
+    def is_to_plan(self, message: dict[str, Any]) -> bool:
+        """Whether a message ends a recording, which is then planned."""
+        return message.get("do") == "stop" and "stop" in self._actions()
+
     def step(self) -> bool:
         """One period of the arm's motion; returns whether anything changed."""
         if self._whole is None:

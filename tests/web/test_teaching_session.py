@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import time
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from drake_screw.screws import (
 )
 from drake_screw.visualization.inspector import Inspector
 from drake_screw.visualization.lifetime import page_meshcat
+from drake_screw.web import teaching_page
 from drake_screw.web.led_arm import PERIOD, TAKEN_BACK
 from drake_screw.web.teaching_session import TeachingSession
 
@@ -258,3 +260,41 @@ def test_a_folder_that_cannot_be_used_is_told(session, tmp_path) -> None:
     words = session.offer_folder(folder)
     assert "broken" in words
     assert session.leading
+
+
+class Clicks:
+    """A server whose person records, stops after half a second, and skips."""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        self.url, self.shown = "http://localhost:0", []
+        self._todo = ["record", "stop", "skip"]
+
+    def message(self, wait: float) -> dict | None:
+        """The next click, once it can be made."""
+        time.sleep(wait)
+        last = self.shown[-1] if self.shown else {"can": [], "clock": ""}
+        if (
+            not self._todo
+            or self._todo[0] not in last["can"]
+            or "0.0" <= last["clock"][11:14] < "0.5"
+        ):
+            return None
+        return {"do": self._todo.pop(0)}
+
+    def show(self, state: dict) -> None:
+        self.shown.append(state)
+
+    def close(self) -> None:
+        pass
+
+
+def test_the_page_says_that_it_is_at_work_before_it_plans(setup, monkeypatch) -> None:
+    monkeypatch.setattr(teaching_page, "PanelServer", Clicks)
+    page = teaching_page.TeachingPage(setup, announce=lambda _: None)
+    assert page.ask(PLACE, 0) is None
+    shown = page._server.shown
+    (at_work,) = [i for i, state in enumerate(shown) if "planning" in state["message"]]
+    assert shown[at_work]["can"] == []
+    assert "stop" in shown[at_work - 1]["can"]
+    assert "stop" not in shown[at_work + 1]["can"]
+    page.close()
