@@ -84,7 +84,9 @@ def _break_hdf5(rng: Random, file: Path) -> None:
         del made[name]
         if rng.random() < 0.8:
             last = name.rpartition("/")[2]
-            parent[last if rng.random() < 0.8 else _plain(word(rng)) or "x"] = other
+            put_at = last if rng.random() < 0.8 else _plain(word(rng)).replace("/", "").strip(".")
+            if put_at and put_at not in parent:
+                parent[put_at] = other
 
 
 def _plain(text: str) -> str:

@@ -169,6 +169,8 @@ def _oddity(error: ErrorDetails) -> str:
     match error["loc"]:
         case ("status",) if not missing:
             return f"no run has the status '{error['input']}'"
+        case ("rounds" | "demonstrations" as block, int(number)) if error["type"] == "value_error":
+            return f"what it says of {block[:-1]} {number + 1} is {error['ctx']['error']}"
         case ("rounds" | "demonstrations" as block, int(number)):
             return f"what it says of {block[:-1]} {number + 1} is {found}"[:80]
         case ("rounds" | "demonstrations" as block, int(number), *rest):

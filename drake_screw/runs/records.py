@@ -110,6 +110,18 @@ class RoundRecord:
     next_demonstration: SuggestionRecord | None
     verdict: VerdictRecord
 
+    def __post_init__(self) -> None:
+        verdict = self.verdict
+        of_regions = (
+            *(self.samples, self.failure_rates, verdict.samples, verdict.failures),
+            *(verdict.lower, verdict.upper),
+        )
+        K = len(self.samples)
+        if {len(values) for values in of_regions} != {K} or K == 0:
+            raise ValueError("of different numbers of regions")
+        if not all(0 <= region < K for region in (self.weakest_region, verdict.region)):
+            raise ValueError(f"of a weakest region that is none of its {K}")
+
     @classmethod
     def of(cls, event: RoundFinished) -> RoundRecord:
         """The record of a round."""

@@ -118,10 +118,11 @@ def test_a_verdict_comes_back_exactly() -> None:
 
 def test_rates_of_regions_without_samples_are_kept(finished_run: Path, tmp_path: Path) -> None:
     record = read_run_record(finished_run / "run.json")
-    first = replace(record.rounds[0], failure_rates=(float("nan"), float("inf")))
+    rates = (*record.rounds[0].failure_rates[2:], float("nan"), float("inf"))
+    first = replace(record.rounds[0], failure_rates=rates)
     file = tmp_path / "run.json"
     file.write_text(json_text(replace(record, rounds=(first,))))
-    np.testing.assert_array_equal(read_run_record(file).rounds[0].failure_rates, [np.nan, np.inf])
+    np.testing.assert_array_equal(read_run_record(file).rounds[0].failure_rates, rates)
 
 
 def test_the_table_of_regions_is_csv() -> None:
@@ -150,6 +151,22 @@ def remove_coverage(record: dict) -> None:
     del record["certificate"]["coverage"]
 
 
+def leave_out_a_region(record: dict) -> None:
+    record["rounds"][0]["failure_rates"].pop()
+
+
+def leave_out_bounds(record: dict) -> None:
+    record["rounds"][0]["verdict"]["upper"] = []
+
+
+def name_no_region(record: dict) -> None:
+    record["rounds"][1]["weakest_region"] = 16
+
+
+def conclude_of_no_region(record: dict) -> None:
+    record["rounds"][1]["verdict"]["region"] = -1
+
+
 def change_seed(record: dict) -> None:
     record["seed"] = "3"
 
@@ -170,6 +187,13 @@ def test_what_is_no_record_is_told(text: str, tmp_path) -> None:
         (change_remark, "what it says of demonstration 2 is damaged: 'remark' is 7"),
         (remove_coverage, "'certificate' is "),
         (change_seed, "'seed' is '3'"),
+        (leave_out_a_region, "what it says of round 1 is of different numbers of regions"),
+        (leave_out_bounds, "what it says of round 1 is of different numbers of regions"),
+        (name_no_region, "what it says of round 2 is of a weakest region that is none of its 16"),
+        (
+            conclude_of_no_region,
+            "what it says of round 2 is of a weakest region that is none of its 16",
+        ),
     ],
 )
 def test_damage_is_named_with_its_place(finished_run, tmp_path, damage, expected) -> None:
