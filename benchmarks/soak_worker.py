@@ -73,7 +73,9 @@ def _prepare() -> None:
 def _judged(kind: str, index: int, seed: int, originals: Path) -> dict[str, Any]:
     rng = np.random.default_rng([seed, list(KINDS).index(kind), index])
     home, began = os.getcwd(), time.process_time()
-    folder = Path(tempfile.mkdtemp(prefix="soak_"))
+    parent = Path(tempfile.mkdtemp(prefix="soak_"))  # what .. is, with nothing else in it
+    folder = parent / "here"
+    folder.mkdir()
     os.chdir(folder)
     try:
         arguments = KINDS[kind][1](rng, originals)
@@ -85,7 +87,7 @@ def _judged(kind: str, index: int, seed: int, originals: Path) -> dict[str, Any]
             changed = [name for name in changed if name not in CARRIED_ON]
     finally:
         os.chdir(home)
-        shutil.rmtree(folder, ignore_errors=True)
+        shutil.rmtree(parent, ignore_errors=True)
     verdict = "traceback" if why else verdict_of(code, printed, changed, names)
     seconds = round(time.process_time() - began, 3)
     found: dict[str, Any] = {"kind": kind, "index": index, "verdict": verdict, "seconds": seconds}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -42,6 +43,24 @@ def succeeds(line: str, folder: Path) -> str:
     return done.stdout
 
 
+def serves(line: str, folder: Path) -> None:
+    """A line that serves a page until Ctrl-C tells where it is, and ends without a traceback."""
+    command = shlex.split(line)
+    with subprocess.Popen(
+        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as going:
+        assert going.stdout is not None
+        said = ""
+        for said in going.stdout:
+            if "http://" in said:
+                break
+        assert "http://" in said, f"{line}: no page"
+        going.send_signal(signal.SIGINT)
+        rest = going.stdout.read()
+    assert going.returncode in (0, 130), rest
+    assert "Traceback" not in rest
+
+
 @pytest.mark.slow
 def test_getting_started_ends_with_an_own_recording_looked_at(tmp_path: Path) -> None:
     if not COMMAND.exists():
@@ -63,7 +82,8 @@ def test_commands_in_their_order(tmp_path: Path) -> None:
     listed = commands()
     assert len(listed) >= 10
     for line in listed:
-        succeeds(line.replace("drake-screw", str(COMMAND)), tmp_path)
+        do = serves if "--live" in line else succeeds
+        do(line.replace("drake-screw", str(COMMAND)), tmp_path)
     missing = [name for name in LEAVES if not (tmp_path / name).is_file()]
     assert missing == []
     for entry in re.findall(r"^      (\S+)", (ROOT / "README.md").read_text(), re.MULTILINE):
