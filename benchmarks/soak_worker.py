@@ -79,7 +79,7 @@ def _judged(kind: str, index: int, seed: int, originals: Path) -> dict[str, Any]
     os.chdir(folder)
     try:
         arguments = KINDS[kind][1](rng, originals)
-        names = [str(folder), *_names(arguments)] if kind != "command line" else [""]
+        names = [str(parent), *_names(arguments)] if kind != "command line" else [""]
         before = _listing(folder)
         code, printed, why = call(arguments)
         changed = [str(f) for f, stat in _listing(folder).items() if before.get(f) != stat]
