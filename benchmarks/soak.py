@@ -112,6 +112,8 @@ def shared_out(count: int, kinds: Sequence[str]) -> Iterator[Input]:
     """So many inputs of each kind, by their shares, the kinds taking turns."""
     total = sum(KINDS[kind][0] for kind in kinds)
     numbers = {kind: max(round(count * KINDS[kind][0] / total), 1) for kind in kinds}
+    most = max(numbers, key=lambda kind: numbers[kind])
+    numbers[most] = max(numbers[most] + count - sum(numbers.values()), 1)
     turns = sorted((i / n, kind, i) for kind, n in numbers.items() for i in range(n))
     return ((kind, index) for _, kind, index in turns)
 
