@@ -159,7 +159,7 @@ def _number(row: Sequence[str], column: int) -> float:
 def _parquet(file: Path) -> Iterator[InstanceFile]:
     pa, pq = parquet_modules(file)
     try:
-        with pq.ParquetFile(file, buffer_size=BUFFER) as opened:
+        with pq.ParquetFile(file, buffer_size=BUFFER, pre_buffer=False) as opened:
             yield _Parquet(pa, opened)
     except (OSError, pa.ArrowException) as error:
         raise ScenarioError(

@@ -183,7 +183,7 @@ class _Parquet:
     @staticmethod
     def copy(file: Path, source: Path, target: Path, left_out: Collection[int]) -> None:
         pa, pq = parquet_modules(file)
-        with pq.ParquetFile(source) as old:
+        with pq.ParquetFile(source, pre_buffer=False) as old:  # not all of it at once
             kept = [i for i in range(len(old.schema_arrow)) if i not in left_out]
             schema = pa.schema([old.schema_arrow.field(i) for i in kept])
             with pq.ParquetWriter(target, schema) as new:

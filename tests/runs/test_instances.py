@@ -225,3 +225,17 @@ def test_parquet_needs_pyarrow(tmp_path, monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with pytest.raises(ScenarioError, match=r"(?s)need pyarrow.*drake-screw\[parquet\]"):
         read_instances(tmp_path / "in.parquet", ONE)
+
+
+def test_a_parquet_file_is_never_in_memory_as_a_whole(tmp_path) -> None:
+    rng = np.random.default_rng(0)
+    file = tmp_path / "in.parquet"
+    columns = {"x": rng.uniform(0.5, 1.0, 1 << 20), "y": rng.uniform(-0.5, 0.5, 1 << 20)}
+    pq.write_table(pa.table(columns), file, row_group_size=1 << 16)
+    before, most, rows = pa.total_allocated_bytes(), 0, 0
+    with instance_files.open_instances(file) as found:
+        for block in found.blocks((0, 1)):
+            most = max(most, pa.total_allocated_bytes() - before)
+            rows += len(block.numbers)
+    assert rows == 1 << 20
+    assert most < file.stat().st_size / 3
