@@ -31,7 +31,7 @@ FLAGS = (
     "--enable-unsafe-swiftshader",
     "--disable-background-networking",
     "--hide-scrollbars",
-    "--window-size=1200,900",
+    "--window-size=1300,900",
 )
 PATIENCE = 60.0
 
