@@ -15,8 +15,10 @@ from datetime import datetime
 from pathlib import Path
 
 from drake_screw.errors import DrakeScrewError, RunDirectoryError
+from drake_screw.file_locks import lock
 
 WRITABLE_OUTPUT = "Give an --output in a folder that exists and that you may write to."
+WRITTEN_NOW = "another process is writing it just now"
 NO_FILE = "it is a device or a pipe, not a file"
 
 
@@ -60,7 +62,8 @@ def appearing(file: Path, *, shared: bool = False) -> Iterator[Path]:
         Where to write it, in the same folder. If something is raised, nothing stays of it.
 
     Raises:
-        OSError: it cannot be written, or is something else than a file, which is left alone.
+        OSError: it cannot be written, or is something else than a file, which is left alone; or it
+            is not `shared`, and another process is writing it.
     """
     file = Path(os.path.realpath(file))
     if file.is_dir():
@@ -70,12 +73,18 @@ def appearing(file: Path, *, shared: bool = False) -> Iterator[Path]:
     own = f".{os.getpid()}" if shared else ""
     temporary = file.with_name(f".{file.name}{own}.part")
     try:
+        descriptor, _ = lock(temporary)
+    except BlockingIOError:
+        raise FileExistsError(errno.EEXIST, WRITTEN_NOW, str(file)) from None
+    try:
         yield temporary
         os.replace(temporary, file)
     except BaseException:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise
+    finally:
+        os.close(descriptor)
 
 
 def write_folder(folder: Path, fill: Callable[[Path], None]) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import errno
-import fcntl
 import json
 import logging
 import os
@@ -13,6 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from drake_screw.errors import RunDirectoryError
+from drake_screw.file_locks import lock
 from drake_screw.files import now, writing
 from drake_screw.json_values import decode_json
 
@@ -37,54 +36,36 @@ def holding(folder: Path, what: str) -> Iterator[None]:
     """
     file = folder / LOCK
     with writing(folder, f"Make the folder of this {what} writable."):
-        lock = _locked(file, what)
+        descriptor = _locked(file, what)
     try:
         yield
     finally:
         with suppress(OSError):
             file.unlink(missing_ok=True)
-        os.close(lock)
+        os.close(descriptor)
 
 
 def _locked(file: Path, what: str) -> int:
-    """A descriptor of the file, locked; whoever had it last may have removed it meanwhile."""
-    while True:
-        lock = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if _is_at(lock, file):
-                os.truncate(lock, 0)
-                os.write(lock, json.dumps(_this_process()).encode())
-                return lock
-        except BlockingIOError:
-            os.close(lock)
-            raise RunDirectoryError(
-                f"another process is at work on this {what}: {_holder(file)}",
-                remedy="Wait until it has ended, or end it.",
-                file=file.parent,
-            ) from None
-        except OSError as error:
-            if error.errno not in _NO_LOCKS:
-                os.close(lock)
-                raise
-            _log.warning(
-                "%s: this file system has no locks; take care that no other process is at work on "
-                "this %s",
-                file.parent,
-                what,
-            )
-            return lock
-        os.close(lock)
-
-
-_NO_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
-
-
-def _is_at(lock: int, file: Path) -> bool:
+    """A descriptor of the file, locked."""
     try:
-        return os.path.samestat(os.fstat(lock), file.stat())
-    except FileNotFoundError:
-        return False
+        descriptor, is_locked = lock(file)
+    except BlockingIOError:
+        raise RunDirectoryError(
+            f"another process is at work on this {what}: {_holder(file)}",
+            remedy="Wait until it has ended, or end it.",
+            file=file.parent,
+        ) from None
+    if is_locked:
+        os.truncate(descriptor, 0)
+        os.write(descriptor, json.dumps(_this_process()).encode())
+    else:
+        _log.warning(
+            "%s: this file system has no locks; take care that no other process is at work on "
+            "this %s",
+            file.parent,
+            what,
+        )
+    return descriptor
 
 
 def _this_process() -> dict[str, str | int]:

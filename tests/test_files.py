@@ -5,6 +5,9 @@ from __future__ import annotations
 import errno
 import os
 import resource
+import signal
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -12,6 +15,7 @@ import pytest
 
 from drake_screw.errors import DrakeScrewError, RunDirectoryError, ScenarioError
 from drake_screw.files import (
+    appearing,
     file_hash,
     fresh_folder,
     make_folder,
@@ -206,3 +210,33 @@ def test_a_limit_on_files_is_told_with_what_is_needed(tmp_path: Path) -> None:
         "70 kB are needed for large"
     )
     assert not list(tmp_path.iterdir())
+
+
+def test_a_file_that_is_being_written_is_left_to_who_writes_it(tmp_path: Path) -> None:
+    file = tmp_path / "out.csv"
+    with appearing(file) as part:
+        part.write_text("first")
+        with pytest.raises(FileExistsError, match="another process is writing it just now"):
+            write_text(file, "second")
+        write_text(file, "shared", shared=True)
+        assert file.read_text() == "shared"
+    assert file.read_text() == "first"
+    write_text(file, "third")
+    assert file.read_text() == "third"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_what_a_killed_process_left_is_written_over(tmp_path: Path) -> None:
+    file = tmp_path / "out.csv"
+    code = (
+        "import os, signal, sys\nfrom pathlib import Path\n"
+        "from drake_screw.files import appearing\n"
+        "with appearing(Path(sys.argv[1])) as part:\n"
+        "    part.write_text('half'); os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    done = subprocess.run([sys.executable, "-c", code, str(file)], check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert [each.name for each in tmp_path.iterdir()] == [".out.csv.part"]
+    write_text(file, "whole")
+    assert file.read_text() == "whole"
+    assert list(tmp_path.iterdir()) == [file]

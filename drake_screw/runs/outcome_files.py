@@ -91,13 +91,13 @@ def _leave_out(
     make: type[_Csv] | type[_Parquet], file: Path, part: Path, left_out: Collection[int]
 ) -> None:
     """Write a table again without some of its columns."""
-    whole = part.with_name(f"{part.name}.whole")
-    part.replace(whole)
+    fewer = part.with_name(f"{part.name}.fewer")
     try:
-        make.copy(file, whole, part, left_out)
+        make.copy(file, part, fewer, left_out)
+        fewer.replace(part)
     finally:
         with suppress(OSError):
-            whole.unlink(missing_ok=True)
+            fewer.unlink(missing_ok=True)
 
 
 class _Kind(Protocol):
