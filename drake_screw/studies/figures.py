@@ -20,11 +20,11 @@ from drake_screw.tasks import GridRegions
 from drake_screw.visualization.cells import cells
 from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
-    ROBOT,
     add_colour_bar,
     draw_heat_map,
     extent,
     legend_handles,
+    room_above,
 )
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK, PAPER, failure_map
@@ -143,10 +143,11 @@ def comparison_figure(
         things: obstacles in the work area or near it.
     """
     seen = cells(regions[0], rounds[0].verdict.estimates)
+    room = room_above(seen)
     lower, upper = extent(seen, things)
     depth, width = upper - lower
     height = float(np.clip(4.8 * depth / max(width, 1e-9), 1.6, 4.8))
-    figure = Figure(figsize=(11.0, height + 1.9 + ROBOT / 72.0), layout="constrained")
+    figure = Figure(figsize=(11.0, height + 1.9 + room / 72.0), layout="constrained")
     grid = figure.add_gridspec(1, 3, width_ratios=[1, 1, 0.03])
     handles: dict[object, Line2D | Patch] = {}
     for i, (event, parts) in enumerate(zip(rounds, regions, strict=True)):
@@ -154,8 +155,8 @@ def comparison_figure(
         figure.get_layout_engine().execute(figure)
         shown = draw_heat_map(ax, event, parts, dots=DOTS, things=things)
         handles |= {h.get_label(): h for h in legend_handles(event, shown, things)}
-        pad = 6.0 + (ROBOT if seen.in_world else 0.0)
-        ax.set_title(_headline(event, parts), fontsize=10, color=INK, loc="left", pad=pad)
+        style = {"fontsize": 10, "color": INK, "loc": "left", "pad": 6.0 + room}
+        ax.set_title(_headline(event, parts), **style)
     add_colour_bar(figure, figure.add_subplot(grid[2]))
     count = len(rounds[0].demonstrations)
     title = f"{scenario}: " if scenario else ""

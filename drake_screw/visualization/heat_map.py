@@ -46,7 +46,7 @@ SHAPES = {
     Cause.EXECUTION: ("v", 4.0),
 }
 GRID = "#b9b4c6"
-ROBOT = 9.0
+_ROBOT = 9.0
 """Points that the robot's mark and name take up above a map."""
 EDGE = np.array([-1e-9, 1e-9])
 """m, that the numbers of a place at the edge of the area may be beyond it by rounding."""
@@ -138,6 +138,11 @@ def extent(drawn: Cells, things: Sequence[Outline] = ()) -> tuple[Array, Array]:
     if not drawn.in_world:
         return drawn.lower.min(axis=0), drawn.upper.max(axis=0)
     return widened(drawn.lower.min(axis=0), drawn.upper.max(axis=0), things)
+
+
+def room_above(drawn: Cells) -> float:
+    """Points above a map that are kept free of text for the robot's mark and name."""
+    return _ROBOT if drawn.in_world else 0.0
 
 
 def _frame(ax: Axes, drawn: Cells, frame: tuple[Array, Array]) -> None:

@@ -13,11 +13,11 @@ from drake_screw.tasks import Regions
 from drake_screw.typing import Array
 from drake_screw.visualization.cells import Cells, cells
 from drake_screw.visualization.heat_map import (
-    ROBOT,
     add_colour_bar,
     draw_heat_map,
     extent,
     legend_handles,
+    room_above,
 )
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK
@@ -85,10 +85,10 @@ def _figure(one: MapOf, drawn: Cells, frame: tuple[Array, Array], title: str) ->
     shown = draw_heat_map(
         ax, one.event, one.regions, dots=DOTS, things=one.things, axes=drawn.axes, frame=frame
     )
-    words = beyond_the_plane(drawn, one.regions)
-    ax.set_title(title, fontsize=11, fontweight="bold", loc="left", color=INK, pad=18.0 + ROBOT)
+    words, room = beyond_the_plane(drawn, one.regions), room_above(drawn)
+    ax.set_title(title, fontsize=11, fontweight="bold", loc="left", color=INK, pad=18.0 + room)
     if words:
-        place = {"xytext": (0, 5 + ROBOT), "textcoords": "offset points", "va": "bottom"}
+        place = {"xytext": (0, 5 + room), "textcoords": "offset points", "va": "bottom"}
         ax.annotate(words, (0, 1), xycoords="axes fraction", fontsize=8, color=INK, **place)
     add_colour_bar(figure, ax.inset_axes((1.02, 0.0, 0.03, 1.0)))
     figure.legend(

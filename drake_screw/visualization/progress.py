@@ -17,11 +17,11 @@ from drake_screw.visualization.cells import Axes as PlaneAxes
 from drake_screw.visualization.cells import cells
 from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
-    ROBOT,
     add_colour_bar,
     draw_heat_map,
     extent,
     legend_handles,
+    room_above,
 )
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK, OUTCOME_COLORS, failure_map
@@ -115,11 +115,10 @@ def run_figure(
     lower, upper = extent(drawn, things)
     depth, width = upper - lower
     shape = float(depth / max(width, 1e-9)) if drawn.from_above else 0.6
-    columns = {1: 2, 4: 2}.get(len(events), min(len(events), COLUMNS))
+    columns = 2 if len(events) in (1, 2, 4) else COLUMNS
     rows, left = -(-len(events) // columns), -len(events) % columns
     row = float(np.clip((WIDTH - 1.4) / columns * shape, 0.9, 4.2)) + 0.65
-    heights = [row] * rows + ([] if left else [2.6])
-    heights[-1] = max(heights[-1], 2.6) if left else heights[-1]
+    heights = [row] * (rows - 1) + ([max(row, 2.6)] if left else [row, 2.6])
     figure = Figure(figsize=(WIDTH, sum(heights) + 1.1), layout="constrained")
     grid = figure.add_gridspec(
         len(heights),
@@ -138,8 +137,7 @@ def run_figure(
         shown.append((event, look))
         count = len(event.demonstrations)
         title = f"round {event.round + 1}: {count} demonstration{'' if count == 1 else 's'}"
-        pad = 6.0 + (ROBOT if drawn.in_world and alone else 0.0)
-        ax.set_title(title, fontsize=9, color=INK, pad=pad)
+        ax.set_title(title, fontsize=9, color=INK, pad=6.0 + alone * room_above(drawn))
         ax.tick_params(labelsize=7)
         ax.set_xlabel(drawn.label(1), fontsize=7.5, color=INK)
         ax.set_ylabel(drawn.label(0), fontsize=7.5, color=INK)

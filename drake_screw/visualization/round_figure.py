@@ -18,11 +18,11 @@ from drake_screw.visualization.cells import Cells, cells, usual_axes
 from drake_screw.visualization.figure_files import save_figure
 from drake_screw.visualization.heat_map import (
     MOST_DOTS,
-    ROBOT,
     add_colour_bar,
     draw_heat_map,
     extent,
     legend_handles,
+    room_above,
 )
 from drake_screw.visualization.outlines import Outline
 from drake_screw.visualization.palette import INK
@@ -105,12 +105,12 @@ def _one_map(
     things, height = look["things"], _height(drawn, look["things"], 7.6)
     caption = fill(_caption(event, regions, drawn), 120)
     height += 0.2 * caption.count("\n") + (0.3 if things else 0.0)
-    figure = Figure(figsize=(9.6, height + 1.6 + ROBOT / 72.0), layout="constrained")
+    room = room_above(drawn)
+    figure = Figure(figsize=(9.6, height + 1.6 + room / 72.0), layout="constrained")
     ax = figure.add_subplot()
     figure.get_layout_engine().execute(figure)
     shown = draw_heat_map(ax, event, regions, **look, axes=drawn.axes)
     blank = "\n" * (1 + caption.count("\n"))
-    room = ROBOT if drawn.in_world else 0.0
     look_of_title = {"fontsize": 12, "fontweight": "bold", "loc": "left", "color": INK}
     ax.set_title(title + blank, **look_of_title, pad=6.0 + room)
     offset = {"xytext": (0, 6 + room), "textcoords": "offset points", "va": "bottom"}
@@ -168,8 +168,8 @@ def _panel(
     shown = draw_heat_map(ax, event, regions, **look, axes=drawn.axes)
     names = list(dict.fromkeys(drawn.area.objects[i].name for i, _ in drawn.axes))
     place = f"{listed(names)}: " if len(drawn.area.objects) > 1 else ""
-    pad = 6.0 + (ROBOT if drawn.in_world else 0.0)
-    ax.set_title(fill(place + text, 70), fontsize=9, loc="left", color=INK, pad=pad)
+    style = {"fontsize": 9, "loc": "left", "color": INK, "pad": 6.0 + room_above(drawn)}
+    ax.set_title(fill(place + text, 70), **style)
     return shown
 
 

@@ -125,10 +125,9 @@ def _rates(drawn: Cells, event: Round, frame: Frame, here: Array | None) -> Iter
         marks = np.concatenate([marks, drawn.place(here)[None]])
     for cell, region in enumerate(drawn.region):
         ends = frame.place(np.array([drawn.lower[cell], drawn.upper[cell]]))
-        rate = event.verdict.estimates[region]
-        if not rate > 0.0 or (np.ptp(ends, axis=0) < [34.0, 14.0]).any():
+        rate, (width, height) = event.verdict.estimates[region], np.ptp(ends, axis=0)
+        if not rate > 0.0 or width < 34.0 or height < 14.0:
             continue
-        width, height = np.ptp(ends, axis=0)
         text = np.array([4.0 / height, 3.4 * len(_percent(rate)) / width])
         gap = text + HERE / np.array([height, width])
         spot = clear_spot(drawn.lower[cell], drawn.upper[cell], marks, text, gap)

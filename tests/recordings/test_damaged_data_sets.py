@@ -86,8 +86,7 @@ def _read_or_refused(place: Path, setup: Setup) -> bool:
 
 def _set(path: Path, change: Callable[[Any], None]) -> Path:
     """An episode of robosuite with something wrong."""
-    q = np.tile([0.5, -0.2, -0.7, 1.5, 1.8, -0.9, -0.5], (50, 1))
-    q[:, 0] += 0.01 * np.arange(50)
+    _, q = motion()
     with h5py.File(path, "w") as file:
         data = file.create_group("data")
         data.attrs["env_args"] = json.dumps({"env_kwargs": {"control_freq": 20}})
@@ -178,8 +177,7 @@ def test_what_frames_of_lerobot_may_hold(
 ) -> None:
     import pyarrow.parquet as pq
 
-    q = np.tile([0.5, -0.2, -0.7, 1.5, 1.8, -0.9, -0.5], (40, 1))
-    q[:, 0] += 0.01 * np.arange(40)
+    q = motion()[1][:40]
     frames: dict[str, Any] = {
         STATE: q.tolist(),
         "timestamp": (np.arange(40) / 30.0).tolist(),
