@@ -190,10 +190,11 @@ class CertifyOrSplit:
 
     def _claim(self, cell: Cell | None) -> str:
         if cell is None:
+            least = confidence(1.0 - max(self.level, self.goal.tau))
             held = f"confidence {confidence(1.0 - self.goal.delta)} for the whole run"
             return (
                 f"every dyadic cell that takes up at least {self.smallest:.4g} of the whole "
-                f"succeeds at least {1.0 - max(self.level, self.goal.tau):g} of the time, the "
+                f"succeeds at least {least} of the time, the "
                 f"whole at least {confidence(self.goal.beta)} ({held})"
             )
         return f"this cell fails at least {self.bounds(cell)[0]:.4f} of the time"

@@ -243,3 +243,9 @@ def test_a_box_can_start_in_a_later_epoch() -> None:
     (cell,) = tree.start(4)
     assert (cell.epoch, cell.n, cell.cleared) == (4, 0, False)
     assert tree.least(cell) > tree.least(tree.start()[0])
+
+
+def test_what_a_certificate_says_of_small_cells_is_not_rounded_up() -> None:
+    goal = replace(GOAL, beta=1.0 - 1e-7, epsilon=1e-8)
+    claim = CertifyOrSplit(goal, 2, SMALLEST, 1e-9)._claim(None)
+    assert "succeeds at least 0.9999999 of the time, the whole at least 0.9999999" in claim
